@@ -4,6 +4,7 @@
 #include "io/files.hpp"
 #include "io/message.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <filesystem>
@@ -61,9 +62,17 @@ Archive::Archive(const Format& format) : has_format(true)
 Archive::Archive(const Format& format, std::string_view bytes, std::string name)
     : file(std::move(name)), reading(true)
 {
-    if (!bytes.starts_with(std::string_view(format.letters, letters_size)))
-        throw damaged("the header is not that of a checkpoint of this program");
-    if (bytes.size() < header_size + number_size) throw damaged("it is truncated");
+    const std::string_view letters(format.letters, letters_size);
+    if (!bytes.starts_with(letters)) {
+        std::string got(bytes.substr(0, letters_size));
+        std::replace_if(
+            got.begin(), got.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+        throw damaged("the header is not that of a checkpoint, which begins with '" + std::string(letters) +
+                      "', got '" + got + '\'');
+    }
+    if (bytes.size() < header_size + number_size)
+        throw damaged("it must have at least " + std::to_string(header_size + number_size) + " bytes, got " +
+                      std::to_string(bytes.size()));
     if (const std::uint64_t length = number_at(bytes, letters_size + number_size); length != bytes.size())
         throw damaged("its length must be " + std::to_string(length) + " bytes, got " +
                       std::to_string(bytes.size()));
@@ -71,8 +80,11 @@ Archive::Archive(const Format& format, std::string_view bytes, std::string name)
         throw IoError(file + ": the checkpoint has format " + std::to_string(version) +
                       "; this program reads format " + std::to_string(format.version));
     const std::size_t end = bytes.size() - number_size;
-    if (number_at(bytes, end) != checksum(bytes.data(), end)) throw damaged("wrong checksum");
+    if (const std::uint64_t sum = checksum(bytes.data(), end); number_at(bytes, end) != sum)
+        throw damaged("wrong checksum, it must be " + std::to_string(sum) + ", got " +
+                      std::to_string(number_at(bytes, end)));
     in = bytes.substr(header_size, end - header_size);
+    next = last = header_size, has_format = true;
 }
 
 Archive::Archive(const Format& format, std::uint64_t length, const Append* to)
@@ -118,16 +130,21 @@ void Archive::raw(void* at, std::size_t n)
         out.append(bytes, n);
         return;
     }
-    if (in.size() < n) throw damaged("unexpected end of data");
+    last = next;
+    if (in.size() < n)
+        throw damaged("unexpected end of data, " + std::to_string(n) + " bytes must follow, got " +
+                          std::to_string(in.size()),
+                      last);
     if (n > 0) std::memcpy(at, in.data(), n);
     in.remove_prefix(n);
+    next += n;
 }
 
 void Archive::count(std::size_t& n, std::size_t bytes)
 {
     auto wide = static_cast<std::uint64_t>(n);
     value(wide);
-    check(wide <= in.size() / bytes, "invalid length of a list");
+    check(wide <= in.size() / bytes, "invalid length of a list, got " + std::to_string(wide));
     n = wide;
 }
 

@@ -81,13 +81,29 @@ public:
     /// The length of a list whose elements of at least `bytes` bytes follow
     void count(std::size_t& n, std::size_t bytes);
 
-    /// IoError "FILE: the checkpoint is damaged: WHAT" if it reads and `valid` is false
+    /// IoError "FILE: the checkpoint is damaged at byte N: WHAT" if it reads and `valid` is false. N is the
+    /// begin of the value or list that was read last.
     void check(bool valid, const std::string& what) const
     {
-        if (reading && !valid) throw damaged(what);
+        if (reading && !valid) throw damaged(what, last);
+    }
+    /// The same for the elements of the list that was read last; N is the begin of the first one for which
+    /// is_valid(element) is false. "WHAT, got " precedes the text shown(element).
+    template <class List, class IsValid, class Shown>
+    void check_each(const List& values, const std::string& what, const IsValid& is_valid,
+                    const Shown& shown) const
+    {
+        if (!reading) return;
+        const auto n = static_cast<std::size_t>(values.size());
+        for (std::size_t k = 0; k < n; ++k)
+            if (const auto& value = values.data()[k]; !is_valid(value))
+                throw damaged(what + ", got " + shown(value), last + k * sizeof value);
     }
     /// Ends reading: IoError if values are left.
-    void end() const { check(in.empty(), "unread bytes after the content"); }
+    void end() const
+    {
+        check(in.empty(), "unread bytes after the content, got " + std::to_string(in.size()));
+    }
     /// Ends writing and returns the bytes.
     std::string bytes();
 
@@ -96,9 +112,11 @@ private:
     Archive(const Format& format, std::uint64_t length, const Append* append);
     void pass_on();
     void raw(void* at, std::size_t n);
-    IoError damaged(const std::string& what) const
+    /// `at`: place in the file [byte]; 0: none
+    IoError damaged(const std::string& what, std::size_t at = 0) const
     {
-        return IoError(file + ": the checkpoint is damaged: " + what);
+        const std::string place = has_format && at > 0 ? " at byte " + std::to_string(at) : "";
+        return IoError(file + ": the checkpoint is damaged" + place + ": " + what);
     }
 
     static constexpr std::size_t piece = 1 << 20;  ///< [byte]; a multiple of a word of the checksum
@@ -106,8 +124,9 @@ private:
     std::uint64_t passed_on = 0, sum = checksum("", 0);  ///< of the pieces
     bool in_pieces = false;
 
-    std::string out;      ///< written and not yet passed on
-    std::string_view in;  ///< not yet read
+    std::string out;                 ///< written and not yet passed on
+    std::string_view in;             ///< not yet read
+    std::size_t next = 0, last = 0;  ///< begin of that, and of the value that was read last [byte]
     std::string file;
     bool reading = false, has_format = false;
 };

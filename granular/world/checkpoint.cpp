@@ -6,6 +6,7 @@
 // of the saved world, and a checkpoint has no influence on the results, wherever it is taken.
 #include "granular/world/world_impl.hpp"
 #include "io/archive.hpp"
+#include "io/json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,54 +17,106 @@
 
 namespace hilda::granular {
 
+using namespace detail;
+
 namespace {
 
 constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 11};
 
-bool finite(const Float4& a) { return std::isfinite(a.x + a.y + a.z + a.w); }
-template <class Array>
-bool all_finite(const Array& list)
+/// Texts of values, for messages
+std::string shown(double x) { return io::shortest(x); }
+std::string shown(const Vec3& v) { return '(' + shown(v.x) + ", " + shown(v.y) + ", " + shown(v.z) + ')'; }
+std::string shown(const Float4& a)
 {
-    return std::all_of(list.data(), list.data() + list.size(), [](const auto& a) { return finite(a); });
+    return '(' + shown(a.x) + ", " + shown(a.y) + ", " + shown(a.z) + ", " + shown(a.w) + ')';
 }
 
-/// The domain is one that World can have: the neighbour search uses it as an index range.
-bool valid(const Domain& d, const WorldOptions& options)
+/// Refuses the first element of the list that was read last which is not finite.
+template <class Array>
+void check_vectors(const io::Archive& a, const Array& list, const char* what)
+{
+    a.check_each(
+        list, std::string(what) + " must be finite", [](const Float4& x) { return finite(x); },
+        [](const Float4& x) { return shown(x); });
+}
+
+/// "" if the domain is one that World can have: the neighbour search uses it as an index range. Otherwise the
+/// member that it cannot have, and its value.
+std::string fault(const Domain& d, const WorldOptions& options)
 {
     const double low[] = {options.low.x, options.low.y, options.low.z};
+    const auto is = [](const std::string& name, double value) { return name + ", got " + shown(value); };
     const std::int32_t y = d.grid.shift_y, z = d.grid.shift_z;
-    if (!(y >= 0 && y <= z && z < CellGrid::cell_bits)) return false;
+    if (!(y >= 0 && y < CellGrid::cell_bits)) return is("invalid bits of the cells along x", y);
+    if (!(z >= y && z < CellGrid::cell_bits)) return is("invalid bits of the cells along y", z);
     const std::int64_t most[] = {std::int64_t{1} << y, std::int64_t{1} << (z - y),
                                  std::int64_t{1} << (CellGrid::cell_bits - z)};
     double cells = d.replicas;
     for (int k = 0; k < 3; ++k) {
+        const std::string along = std::string(" along ") + "xyz"[k];
         cells *= d.grid.cells[k];
-        if (d.grid.low[k] != low[k] || d.grid.cells[k] < 1 || d.grid.cells[k] > most[k] ||
-            d.grid.width[k] < 1 || d.grid.width[k] > CellGrid::widest || d.grid.last[k] < 0 ||
-            d.grid.last[k] > d.grid.width[k] || d.grid.periodic[k] != (options.periodic[k] ? 1 : 0))
-            return false;
+        if (d.grid.low[k] != low[k]) return is("another low corner" + along, d.grid.low[k]);
+        if (d.grid.cells[k] < 1 || d.grid.cells[k] > most[k])
+            return is("invalid number of cells" + along, d.grid.cells[k]);
+        if (d.grid.width[k] < 1 || d.grid.width[k] > CellGrid::widest)
+            return is("invalid width of the cells" + along, d.grid.width[k]);
+        if (d.grid.last[k] < 0 || d.grid.last[k] > d.grid.width[k])
+            return is("invalid width of the last cell" + along, d.grid.last[k]);
+        if (d.grid.periodic[k] != (options.periodic[k] ? 1 : 0))
+            return is("another periodicity" + along, d.grid.periodic[k]);
     }
-    if (cells > max_cells) return false;
+    if (cells > max_cells) return is("too many cells", cells);
     const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-    return positive(d.grid.unit) && positive(d.skin) && std::isfinite(d.radius) && d.radius >= 0 &&
-           positive(d.small) && positive(d.largest) && d.replicas >= 1 && d.replicas <= 1 << 16;
+    if (!positive(d.grid.unit)) return is("the unit of length must be positive", d.grid.unit);
+    if (!positive(d.skin)) return is("the skin must be positive", d.skin);
+    if (!positive(d.largest)) return is("invalid largest radius", d.largest);
+    // what World::domain_of() computes, up to rounding errors
+    constexpr double round_up = 1 + 1e-5;
+    const double size[] = {options.high.x - options.low.x, options.high.y - options.low.y,
+                           options.high.z - options.low.z};
+    for (int k = 0; k < 3; ++k) {
+        const double units = double(d.grid.width[k]) * (d.grid.cells[k] - 1) + d.grid.last[k];
+        if (!(std::abs(units - size[k] / d.grid.unit) < 1))
+            return is(std::string("the cells must be as wide as the domain along ") + "xyz"[k],
+                      units * d.grid.unit);
+        if (!(2. * d.small + d.skin <= round_up * d.grid.width[k] * d.grid.unit))
+            return is("the cells are too narrow for small particles of the radius", d.small);
+    }
+    if (!(2. * d.largest + d.skin <= round_up * CellGrid::widest * d.grid.unit))
+        return is("the unit of length is too small for the largest radius", d.largest);
+    if (!(d.radius >= 0 && d.radius <= d.largest)) return is("invalid common radius", d.radius);
+    if (!(d.small > 0 && d.small <= round_up * d.largest))
+        return is("invalid radius of small particles", d.small);
+    if (d.replicas < 1 || d.replicas > 1 << 16) return is("invalid number of replicas", d.replicas);
+    return "";
 }
 
-bool valid(const WatchRecord& w)
-{
-    static_assert(sizeof w % sizeof(double) == 0);
-    constexpr std::size_t integers = 4, numbers = sizeof w / sizeof(double) - integers;
-    static_assert(offsetof(WatchRecord, kinetic) == integers * sizeof(double));
-    double all[numbers];
-    std::memcpy(all, reinterpret_cast<const char*>(&w) + integers * sizeof(double), sizeof all);
-    return w.samples >= 0 &&
-           std::all_of(std::begin(all), std::end(all), [](double x) { return std::isfinite(x); });
-}
-
+/// The numbers of a removed particle that are used; one that is not finite, or its side, makes it invalid.
 bool valid_removed(const RemovedParticle& p)
 {
-    return finite(p.r) && finite(p.v) && finite(p.omega) && std::isfinite(p.t + p.radius + p.mass) &&
-           p.side < 6;
+    return finite(p.r) && finite(p.v) && finite(p.omega) && std::isfinite(p.t) && std::isfinite(p.radius) &&
+           std::isfinite(p.mass) && p.side < 6;
+}
+std::string shown(const RemovedParticle& p)
+{
+    return "t " + shown(p.t) + ", r " + shown(p.r) + ", v " + shown(p.v) + ", omega " + shown(p.omega) +
+           ", side " + std::to_string(p.side);
+}
+
+/// The numbers of a place are finite, and its axis has the length 1.
+template <class Place>
+bool valid_place(const Place& b)
+{
+    return finite(b.r) && std::abs(b.axis.norm() - 1) < 1e-6;
+}
+
+bool valid_compensation(const Compensation& c)
+{
+    return finite(to_double(load_bfloat16(c.v))) && finite(to_double(load_bfloat16(c.omega)));
+}
+std::string shown(const Compensation& c)
+{
+    return shown(to_double(load_bfloat16(c.v))) + ", " + shown(to_double(load_bfloat16(c.omega)));
 }
 
 /// Ordered by ids below `ids`, with finite places and known boundaries
@@ -84,6 +137,30 @@ bool same_boundary(const Boundary& now, Boundary saved)
     saved.r = now.r, saved.axis = now.axis, saved.v = now.v, saved.omega = now.omega, saved.F = now.F;
     // There is no padding, and -0 or NaN in place of a number is another boundary.
     return std::memcmp(&now, &saved, sizeof saved) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+}
+
+/// The members of a boundary that are invalid or differ from those of the case
+std::string changes(const Boundary& now, const Boundary& saved)
+{
+    std::string all;
+    const auto add = [&](const char* name, const std::string& value) {
+        all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + value;
+    };
+    for (const auto& [name, v] :
+         {std::pair{"r", saved.r}, {"v", saved.v}, {"omega", saved.omega}, {"F", saved.F}})
+        if (!finite(v)) add(name, shown(v));
+    if (!(std::abs(saved.axis.norm() - 1) < 1e-6)) add("axis", shown(saved.axis));
+    for (const auto& [name, before, after] :
+         {std::tuple{"radius", now.radius, saved.radius},
+          {"mass", now.mass, saved.mass},
+          {"inertia", now.inertia, saved.inertia},
+          {"cosine", now.cosine, saved.cosine},
+          {"sine", now.sine, saved.sine},
+          {"material", double(now.material), double(saved.material)},
+          {"shape", double(static_cast<int>(now.shape)), double(static_cast<int>(saved.shape))},
+          {"inside", double(now.inside), double(saved.inside)}})
+        if (!(before == after)) add(name, shown(after));
+    return all.empty() ? "other bytes" : all;
 }
 
 /// The cell exists, and the particle is less than two cell widths away from its low corner: it was inside
@@ -128,17 +205,24 @@ void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs)
 void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries)
 {
     const std::size_t n = a.list(pairs.i);
-    a.check(a.list(pairs.j) == n && a.list(pairs.history) == n, "wrong number of pairs");
-    const std::size_t rotation = a.list(pairs.rotation_history), internal = a.list(pairs.internal);
-    a.check((rotation == 0 || rotation == n) && (internal == 0 || internal == n), "wrong number of pairs");
+    const auto list = [&](auto& values, bool optional) {
+        const std::size_t got = a.list(values);
+        a.check(got == n || (optional && got == 0), "wrong number of pairs, got " + std::to_string(got));
+    };
+    list(pairs.j, false), list(pairs.history, false);
+    check_vectors(a, pairs.history, "a history");
+    list(pairs.rotation_history, true);
+    check_vectors(a, pairs.rotation_history, "a history");
+    list(pairs.internal, true);
+    check_vectors(a, pairs.internal, "a history");
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t j = pairs.j.data()[k];
         const bool valid_j =
             (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) < boundaries : j < particles;
-        a.check(pairs.i.data()[k] < particles && valid_j, "unknown particle of a pair");
+        if (!(pairs.i.data()[k] < particles && valid_j))
+            a.check(false, "unknown particle of a pair, got " + std::to_string(pairs.i.data()[k]) + " and " +
+                               std::to_string(j));
     }
-    a.check(all_finite(pairs.history) && all_finite(pairs.rotation_history) && all_finite(pairs.internal),
-            "a history that is not finite");
     // the pairs of a list before a neighbour search
     pairs.count = static_cast<std::uint32_t>(n);
     pairs.in_contact.resize(n);
@@ -154,19 +238,51 @@ struct World::PlaceAtBuild {
 
 void World::transfer(io::Archive& a)
 {
-    a.value(step_count), a.value(rebuild_count), a.value(max_speed), a.value(domain);
-    a.check(step_count >= 0 && std::isfinite(max_speed) && valid(domain, options), "invalid domain or time");
-    a.value(record), a.value(unsampled_overlap), a.list(moved);
-    a.check(valid(record) && std::isfinite(unsampled_overlap), "a number of the watch that is not finite");
-    a.value(next_id), a.value(total_outflow), a.list(removed_particles);
-    a.check(total_outflow.count >= 0 && std::isfinite(total_outflow.mass) &&
-                std::all_of(removed_particles.begin(), removed_particles.end(), valid_removed),
-            "an invalid record of a removed particle");
+    constexpr long most_steps = 9'000'000'000'000'000;
+    a.value(step_count);
+    a.check(step_count >= 0 && step_count <= most_steps,
+            "invalid number of steps, got " + std::to_string(step_count));
+    a.value(rebuild_count), a.value(max_speed);
+    a.check(std::isfinite(max_speed) && max_speed >= 0, "invalid largest speed, got " + shown(max_speed));
+    a.value(domain);
+    if (const std::string found = a.reads() ? fault(domain, options) : ""; !found.empty())
+        a.check(false, found);
+    a.value(record);
+    a.check(
+        record.samples >= 0 && not_finite(record) == 0,
+        "a number of the watch must be finite, got " +
+            (record.samples < 0 ? std::to_string(record.samples) + " samples" : shown(not_finite(record))));
+    a.value(unsampled_overlap);
+    a.check(std::isfinite(unsampled_overlap), "an overlap must be finite, got " + shown(unsampled_overlap));
+    a.list(moved);
+    a.check_each(
+        moved, "velocities of a boundary must be finite",
+        [](const BoundaryVelocity& b) { return finite(b.v) && finite(b.omega); },
+        [](const BoundaryVelocity& b) { return shown(b.v) + ", " + shown(b.omega); });
+    a.check(moved.empty() || moved.size() == boundaries.size(),
+            "wrong number of boundaries, got " + std::to_string(moved.size()));
+    a.value(next_id), a.value(total_outflow);
+    a.check(total_outflow.count >= 0 && std::isfinite(total_outflow.mass),
+            "invalid outflow, got " + std::to_string(total_outflow.count) + " particles of " +
+                shown(total_outflow.mass) + " kg");
+    a.list(removed_particles);
+    a.check_each(removed_particles, "invalid record of a removed particle", valid_removed,
+                 [](const RemovedParticle& p) { return shown(p); });
     std::vector<Boundary> now = boundaries;
-    a.list(boundaries), a.list(forces);
-    a.check(std::equal(now.begin(), now.end(), boundaries.begin(), boundaries.end(), same_boundary),
-            "other boundaries than in this world");
-    a.check(moved.empty() || moved.size() == boundaries.size(), "wrong number of boundaries");
+    a.list(boundaries);
+    a.check(now.size() == boundaries.size(),
+            "other boundaries than in this world, got " + std::to_string(boundaries.size()));
+    const auto counterpart = [&](const Boundary& b) {
+        return now[static_cast<std::size_t>(&b - boundaries.data())];
+    };
+    a.check_each(
+        boundaries, "a boundary must be that of the case, with a finite place, velocity and load",
+        [&](const Boundary& b) { return same_boundary(counterpart(b), b) && valid_place(b); },
+        [&](const Boundary& b) { return changes(counterpart(b), b); });
+    a.list(forces);
+    check_vectors(a, forces, "a force");
+    a.check(forces.empty() || forces.size() == next_id,
+            "wrong number of forces, got " + std::to_string(forces.size()));
     if (a.reads()) {
         moved_to.clear();
         if (!moved.empty())
@@ -175,12 +291,18 @@ void World::transfer(io::Archive& a)
     transfer_particles(a);
     Particles<par::Cpu>& p = engine->arrays().particle;
     std::size_t n = p.count;
-    a.value(particle_displacement), a.value(boundary_displacement), a.list(boundaries_at_build);
-    a.check(particle_displacement >= 0 && boundary_displacement >= 0, "an invalid displacement");
+    a.value(particle_displacement), a.value(boundary_displacement);
+    a.check(particle_displacement >= 0 && boundary_displacement >= 0,
+            "invalid displacements, got " + shown(particle_displacement) + " and " +
+                shown(boundary_displacement));
+    a.list(boundaries_at_build);
     const bool has_list = std::isfinite(particle_displacement);
-    a.check(!has_list || boundaries_at_build.size() == boundaries.size(), "wrong number of boundaries");
-    for (const BoundaryPlace& b : boundaries_at_build)
-        a.check(finite(b.r) && finite(b.axis), "a boundary that is not finite");
+    a.check(!has_list || boundaries_at_build.size() == boundaries.size(),
+            "wrong number of boundaries, got " + std::to_string(boundaries_at_build.size()));
+    a.check_each(
+        boundaries_at_build, "invalid place of a boundary",
+        [](const BoundaryPlace& b) { return valid_place(b); },
+        [](const BoundaryPlace& b) { return "r " + shown(b.r) + ", axis " + shown(b.axis); });
     n = has_list ? n : 0;
     a.count(n, sizeof(PlaceAtBuild));
     if (!a.reads()) {
@@ -191,13 +313,14 @@ void World::transfer(io::Archive& a)
         }
         return write_pairs(a, engine->arrays().pairs);
     }
-    a.check(n == (has_list ? p.count : 0), "wrong number of particles");
+    a.check(n == (has_list ? p.count : 0), "wrong number of particles, got " + std::to_string(n));
     std::vector<PlaceAtBuild> at_build(n);
     for (std::size_t k = 0; k < n; ++k) {
         PlaceAtBuild& place = at_build[k];
         a.value(place);
-        a.check(inside(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}),
-                "invalid position of a particle");
+        if (!inside(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}))
+            a.check(false, "invalid position of " + name_of(p.id.data()[k]) + ", got " +
+                               shown(Vec3{double(place.x), double(place.y), double(place.z)}));
     }
     read_pairs(a, engine->arrays().pairs, p.count, boundaries.size());
     if (has_list)
@@ -214,47 +337,93 @@ void World::transfer_particles(io::Archive& a)
 {
     Particles<par::Cpu>& p = engine->arrays().particle;
     std::size_t n = p.count;
-    const auto list = [&](auto& values) { a.check(a.list(values, n) == n, "wrong number of particles"); };
+    const auto list = [&](auto& values) {
+        const std::size_t got = a.list(values, n);
+        a.check(got == n, "wrong number of particles, got " + std::to_string(got));
+    };
     /// An array that only some schemes use
-    const auto list_if = [&](bool used, auto& values) {
-        a.check(a.list(values) == (used ? n : 0) && all_finite(values), "an array of another integrator");
+    const auto list_if = [&](bool used, auto& values, const char* what) {
+        const std::size_t got = a.list(values);
+        a.check(got == (used ? n : 0),
+                "an array of another integrator, got " + std::to_string(got) + " elements");
+        check_vectors(a, values, what);
     };
     n = a.list(p.position, n);
-    list(p.velocity), list(p.omega), list(p.compensation), list(p.species), list(p.id);
+    a.check_each(
+        p.position, "invalid position of a particle",
+        [&](const Position& at) { return inside(domain.grid, at); },
+        [&](const Position& at) {
+            return "cell " + std::to_string(at.cell) + ", " +
+                   shown(Vec3{double(at.x), double(at.y), double(at.z)});
+        });
+    list(p.velocity);
+    check_vectors(a, p.velocity, "a velocity");
+    a.check_each(
+        p.velocity, "a radius must be positive and that of the domain",
+        [&](const Float4& v) {
+            return v.w > 0 && v.w <= domain.largest && (domain.radius == 0 || v.w == domain.radius);
+        },
+        [](const Float4& v) { return shown(v.w); });
+    list(p.omega);
+    check_vectors(a, p.omega, "an angular velocity");
+    a.check_each(
+        p.omega, "an inverse mass must not be negative", [](const Float4& w) { return w.w >= 0; },
+        [](const Float4& w) { return shown(w.w); });
+    list(p.compensation);
+    a.check_each(p.compensation, "a rounding error of a velocity must be finite", valid_compensation,
+                 [](const Compensation& c) { return shown(c); });
+    list(p.species);
+    a.check_each(
+        p.species, "invalid material or replica of a particle",
+        [&](const Species& s) { return s.material < materials.size() && s.replica < domain.replicas; },
+        [](const Species& s) { return std::to_string(s.material) + ", " + std::to_string(s.replica); });
+    list(p.id);
+    a.check(!a.reads() || (next_id >= n && next_id - n == static_cast<std::uint64_t>(total_outflow.count) &&
+                           valid_ids(p.id.data(), n, next_id)),
+            "the ids of the particles must be below the next one, " + std::to_string(next_id) +
+                ", and differ, got " + std::to_string(n) + " particles, the largest id " +
+                std::to_string(n > 0 ? *std::max_element(p.id.data(), p.id.data() + n) : 0));
     if (attached_changed) posed.clear();
-    a.list(attached), a.list(rotations), a.list(posed);
-    a.check(valid_attached(attached, next_id, boundaries.size()) &&
-                (rotations.empty() ? attached.empty() : rotations.size() == boundaries.size()),
-            "an invalid attached particle");
+    a.list(attached);
+    a.check(valid_attached(attached, next_id, boundaries.size()),
+            "invalid list of attached particles, got " + std::to_string(attached.size()));
     const auto is_rotation = [](const EulerParameters<double>& e) {
         return std::abs(e.e0 * e.e0 + e.e.dot(e.e) - 1) < 1e-6;
     };
-    a.check(std::all_of(rotations.begin(), rotations.end(), is_rotation) &&
-                (posed.empty() || (!attached.empty() && posed.size() == boundaries.size())) &&
-                std::all_of(posed.begin(), posed.end(),
-                            [&](const BoundaryPose& b) {
-                                return finite(b.r) && finite(b.v) && finite(b.omega) && is_rotation(b.p);
-                            }),
-            "an invalid pose of a boundary");
+    const auto shown_rotation = [](const EulerParameters<double>& e) {
+        return "(" + shown(e.e0) + ", " + shown(e.e.x) + ", " + shown(e.e.y) + ", " + shown(e.e.z) + ')';
+    };
+    a.list(rotations);
+    a.check(rotations.empty() ? attached.empty() : rotations.size() == boundaries.size(),
+            "wrong number of boundaries, got " + std::to_string(rotations.size()));
+    a.check_each(rotations, "invalid rotation of a boundary", is_rotation, shown_rotation);
+    a.list(posed);
+    a.check(posed.empty() || (!attached.empty() && posed.size() == boundaries.size()),
+            "wrong number of boundaries, got " + std::to_string(posed.size()));
+    a.check_each(
+        posed, "invalid pose of a boundary",
+        [&](const BoundaryPose& b) {
+            return finite(b.r) && finite(b.v) && finite(b.omega) && is_rotation(b.p);
+        },
+        [&](const BoundaryPose& b) {
+            return "r " + shown(b.r) + ", v " + shown(b.v) + ", omega " + shown(b.omega) + ", " +
+                   shown_rotation(b.p);
+        });
     const bool previous = detail::uses_previous_acceleration(options.scheme);
-    list_if(previous, p.acc), list_if(previous, p.alpha);
+    list_if(previous, p.acc, "an acceleration"), list_if(previous, p.alpha, "an angular acceleration");
     const std::size_t oriented = a.list(p.orientation);
-    if (a.list(p.orientation_compensation) != oriented || oriented != (options.orientation ? n : 0))
+    const auto is_unit = [](const Float4& e) { return std::abs(length({e.x, e.y, e.z, e.w}) - 1) < 1e-3; };
+    const auto is_error = [](const Float4& e) { return length({e.x, e.y, e.z, e.w}) < 1e-3; };
+    const auto shown_four = [](const Float4& e) { return shown(e); };
+    a.check_each(p.orientation, "Euler parameters must have the length 1", is_unit, shown_four);
+    const std::size_t compensated = a.list(p.orientation_compensation);
+    a.check_each(p.orientation_compensation, "invalid rounding error of Euler parameters", is_error,
+                 shown_four);
+    if (compensated != oriented || oriented != (options.orientation ? n : 0))
         throw io::IoError(a.name() + ": the checkpoint " + (options.orientation ? "has no" : "has") +
                           " orientations, but /orientation of this case is " +
                           (options.orientation ? "true" : "false"));
     if (!a.reads()) return;
-    for (std::size_t k = 0; k < n; ++k)
-        a.check(inside(domain.grid, p.position.data()[k]) &&
-                    p.species.data()[k].material < materials.size() &&
-                    p.species.data()[k].replica < domain.replicas && p.velocity.data()[k].w > 0,
-                "invalid position, material or radius of a particle");
-    a.check(next_id >= n && next_id - n == static_cast<std::uint64_t>(total_outflow.count) &&
-                valid_ids(p.id.data(), n, next_id),
-            "invalid ids of the particles");
-    a.check(forces.empty() || forces.size() == next_id, "wrong number of forces");
-    a.check(all_finite(p.velocity) && all_finite(p.omega) && all_finite(p.orientation) && all_finite(forces),
-            "a velocity or force that is not finite");
     p.count = static_cast<std::uint32_t>(n);
     inserted_count = n;
 }
@@ -291,12 +460,17 @@ void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild
     exchange();
     try {
         find_neighbours();
-    } catch (const LeftDomain&) {
-        throw io::IoError(file + ": the checkpoint is damaged: a particle outside the domain");
+    } catch (const LeftDomain& lost) {
+        throw io::IoError(file + ": the checkpoint is damaged: " + name_of(lost.id) +
+                          " was outside the domain when the neighbour list was built");
     } catch (const io::InvalidInput& e) {
         throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
     }
-    if (order() != saved) throw io::IoError(file + ": the checkpoint is damaged: the order of the particles");
+    const std::uint64_t found = order();
+    if (found != saved)
+        throw io::IoError(file +
+                          ": the checkpoint is damaged: the checksum of the order of the particles must be " +
+                          std::to_string(found) + ", got " + std::to_string(saved));
     exchange();
     boundaries = now;
     std::tie(particle_displacement, boundary_displacement) = displacements;
@@ -339,6 +513,7 @@ void World::from_bytes(const std::string& bytes, const std::string& run_id, cons
     more(a);
     a.end();
     forces_changed = boundaries_changed = true;
+    in_step = false;
     time = static_cast<double>(step_count) * options.h;
 }
 

@@ -128,7 +128,8 @@ public:
         for (std::size_t k = 0; k < fills.size(); ++k) {
             out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()),
                                      fill_places[k].pointer());
-            fill_places[k].located([&] { fill(fills[k], [&](const Particle& p) { out.world->add(p); }); });
+            fill_places[k].located([&] { add_filled(fills[k]); });
+            if (!fills[k].file.empty()) out.tables[fill_places[k].pointer()] = fills[k].file;
             std::vector<Particle>().swap(fills[k].particles);
         }
         start_motions();
@@ -156,6 +157,7 @@ private:
         world.skin = o.number("skin", world.skin);
         if (!(world.skin > 0 && world.skin <= 1))
             o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
+        o.positive("skin", world.skin);  // in single precision
         world.scheme = read_scheme(o);
         world.orientation = o.flag("orientation", false);
     }
@@ -272,6 +274,21 @@ private:
         fill_places.push_back(o);
     }
 
+    /// Adds the particles of a fill. A message about a particle of a table has its line.
+    void add_filled(const FillSpec& spec) const
+    {
+        std::size_t number = 0;
+        fill(spec, [&](const Particle& p) {
+            try {
+                out.world->add(p);
+            } catch (const io::InvalidInput& e) {
+                if (spec.file.empty()) throw;
+                throw io::InvalidInput(place_in_table(spec.file, number) + ": " + e.what());
+            }
+            ++number;
+        });
+    }
+
     /// Evaluates the formulas of the boundaries for the first step, and registers them for all steps.
     void start_motions() const
     {
@@ -321,22 +338,31 @@ Case read_case(const std::string& text, const std::string& file, const Environme
 
 void insert_particles(const Case& c)
 {
-    try {
-        c.world->step(0);
-    } catch (const io::InvalidInput& e) {
-        // Messages of the world refer to particles by their ids.
-        const std::string what = e.what();
+    // Messages of the world refer to particles by their ids.
+    const auto refuse = [&](std::string what) {
         std::string place;
         unsigned id = 0;
         if (std::sscanf(what.c_str(), "particle %u", &id) == 1) {
+            std::uint32_t number = 0;  // of the particle in its entry
             for (const auto& [first, entry] : c.entries)
-                if (first <= id) place = entry;
+                if (first <= id) place = entry, number = id - first;
+            if (const auto table = c.tables.find(place); table != c.tables.end())
+                what = place_in_table(table->second, number) + ": " + what;
         } else if (what.starts_with("laws: ") || what.starts_with("world: ")) {
             place = "/laws";
         } else if (what.starts_with("domain: ")) {
             place = "/domain";
         }
         c.source.fail(place, what);
+    };
+    try {
+        c.world->step(0);
+        c.world->check_finite();
+        c.world->check_loads(c.world->totals());
+    } catch (const io::InvalidInput& e) {
+        refuse(e.what());
+    } catch (const NotFiniteState& e) {
+        refuse(e.what());
     }
 }
 

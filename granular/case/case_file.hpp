@@ -6,6 +6,7 @@
 #include "granular/world/world.hpp"
 #include "io/json_source.hpp"
 
+#include <map>
 #include <optional>
 
 namespace hilda::granular {
@@ -29,6 +30,7 @@ struct Case {
     std::string files_read = {};               ///< names and checksums of the other files that were read
     /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};
+    std::map<std::string, std::string> tables = {};  ///< table file of an entry of `fill`, by its pointer
 };
 
 /// Limits and options that the program passes to the reader

@@ -12,7 +12,9 @@ FillSpec read_filled_box(ObjectReader& o)
     f.low = o.vec3("low"), f.high = o.vec3("high");
     f.radius = o.positive("radius");
     f.least_radius = o.number("least_radius", f.radius);
-    if (!(f.least_radius > 0 && f.least_radius <= f.radius))
+    if (f.least_radius > 0 && f.least_radius <= f.radius)
+        o.positive("least_radius", f.radius);  // in single precision
+    else
         o.fail("least_radius", "least_radius must be positive and not greater than radius, got " +
                                    io::shortest(f.least_radius));
     const double spacing = o.number("spacing", 1.05);
@@ -28,7 +30,8 @@ FillSpec read_filled_box(ObjectReader& o)
          {std::tuple{f.low.x, f.high.x, 0u}, {f.low.y, f.high.y, 1u}, {f.low.z, f.high.z, 2u}})
         if (!(high - low >= 2 * f.radius))
             o.fail("high", axis,
-                   "the box must be at least a diameter wide, got high = " + io::shortest(high));
+                   "high must be at least a diameter, " + io::shortest(2 * f.radius) + ", above low, " +
+                       io::shortest(low) + ", got " + io::shortest(high));
     return f;
 }
 

@@ -29,6 +29,7 @@ struct FillSpec {
     double random_v = 0;                   ///< magnitude of an added velocity of random direction [m/s]
     std::vector<Particle> particles = {};  ///< of the table; empty for the other types
     std::uint64_t checksum = 0;            ///< of the table file
+    std::string file = {};                 ///< name of the table file
 };
 
 /// A type of fill. A file registers it by io::Registry<FillType>::add.
@@ -55,6 +56,9 @@ FillSpec read_fill(ObjectReader& o);
 /// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws io::InvalidInput
 /// with file and line.
 std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
+
+/// "FILE:LINE" of the particle with this number, counted from 0, in a table file; "FILE" if it cannot be read
+std::string place_in_table(const std::string& file, std::size_t particle);
 
 /// Estimated number of particles
 double estimated_count(const FillSpec& filling);

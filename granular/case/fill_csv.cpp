@@ -9,10 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hilda::granular {
 
 namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 36;  ///< of a table
 
 /// The names in quotes, as many as fit into a line
 std::string list_of(const std::vector<std::string_view>& names)
@@ -47,7 +50,13 @@ Particle particle(const io::CsvRow& row)
     const auto has = [&](auto... names) {
         return ((std::find(row.names.begin(), row.names.end(), names) != row.names.end()) || ...);
     };
-    const auto real = [&](const char* name) { return number<double>(row, name, "must be a finite number"); };
+    const auto real = [&](const char* name) {
+        const auto x = number<double>(row, name, "must be a finite number");
+        if (constexpr double most = std::numeric_limits<float>::max(); std::abs(x) > most)
+            throw io::InvalidInput(row.place + ": " + name + " must be at most " + io::shortest(most) +
+                                   " in magnitude, got " + io::shortest(x));
+        return x;
+    };
     const auto vector = [&](const char* x, const char* y, const char* z) {
         return Vec3{real(x), real(y), real(z)};
     };
@@ -55,6 +64,9 @@ Particle particle(const io::CsvRow& row)
     p.r = vector("x", "y", "z"), p.radius = real("radius");
     if (!(p.radius > 0))
         throw io::InvalidInput(row.place + ": radius must be positive, got " + io::shortest(p.radius));
+    if (constexpr double least = std::numeric_limits<float>::min(); p.radius < least)
+        throw io::InvalidInput(row.place + ": radius must be at least " + io::shortest(least) + ", got " +
+                               io::shortest(p.radius));
     if (has("material")) p.material = number<int>(row, "material", "must be the number of a material");
     if (has("vx", "vy", "vz")) p.v = vector("vx", "vy", "vz");
     if (has("omega_x", "omega_y", "omega_z")) p.omega = vector("omega_x", "omega_y", "omega_z");
@@ -65,9 +77,9 @@ Particle particle(const io::CsvRow& row)
 FillSpec read_table(ObjectReader& o)
 {
     FillSpec f;
-    const std::string file = o.file("file");
+    const std::string file = f.file = o.file("file");
     try {
-        const std::string text = io::read_file(file, std::size_t{1} << 36);
+        const std::string text = io::read_file(file, most_bytes);
         f.particles = particles_of_csv(text, file);
         f.checksum = io::checksum(text.data(), text.size());
     } catch (const io::IoError& e) {
@@ -107,6 +119,19 @@ std::vector<Particle> particles_of_csv(const std::string& text, const std::strin
     io::read_csv(text, file, [&](const io::CsvRow& row) { all.push_back(particle(row)); });
     if (all.empty()) throw io::InvalidInput(file + ": contains no particles");
     return all;
+}
+
+std::string place_in_table(const std::string& file, std::size_t particle)
+{
+    std::string place = file;
+    std::size_t row = 0;
+    try {
+        io::read_csv(io::read_file(file, most_bytes), file, [&](const io::CsvRow& r) {
+            if (row++ == particle) place = r.place;
+        });
+    } catch (const std::exception&) {  // it has changed since it was read
+    }
+    return place;
 }
 
 }  // namespace hilda::granular

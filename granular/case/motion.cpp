@@ -14,8 +14,10 @@ Vec3 value(const BoundaryMotion& m, const char* of, const VectorFormula& f, doub
     // in single precision, in which the particles are computed
     const auto finite = [](double x) { return std::isfinite(static_cast<float>(x)); };
     if (finite(at.x) && finite(at.y) && finite(at.z)) return at;
-    char when[64];
-    std::snprintf(when, sizeof when, " is not finite at t = %.9g s", t);
+    const bool beyond = granular::finite(at);
+    char when[200];
+    std::snprintf(when, sizeof when, " is %s at t = %.9g s, got (%.9g, %.9g, %.9g)",
+                  beyond ? "beyond single precision" : "not finite", t, at.x, at.y, at.z);
     throw NotFinite("boundary '" + m.name + "': " + of + when);
 }
 

@@ -4,6 +4,7 @@
 #include "io/nearest.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace hilda::granular {
 
@@ -59,6 +60,25 @@ private:
     const PairLaw& law;
 };
 
+/// Checks that the stiffnesses that are computed from several keys are in the range of single precision.
+void check_stiffness(ObjectReader& pair, const Material& i, const Material& j, const PairLaw& law)
+{
+    constexpr double most = std::numeric_limits<float>::max();
+    const auto refuse = [&](const std::string& what, double value) {
+        if (!(value <= most))
+            pair.fail(what + " must be at most " + io::shortest(most) + ", got " + io::shortest(value));
+    };
+    law.normal.visit([&]<class Law>(const Law& l) {
+        if constexpr (has_material_stiffness<Law>) {
+            const std::string of = " of " + io::described(i.name) + " and " + io::described(j.name);
+            refuse("the effective modulus E*" + of, effective_modulus(i, j));
+            refuse("the stiffness 8 G*" + of, 8 * effective_shear_modulus(i, j));
+        }
+        if constexpr (requires { l.k_1, l.k_2; })
+            refuse("the stiffness k_2, which is k_1/e^2 if it is not given,", static_cast<double>(l.k_2));
+    });
+}
+
 }  // namespace
 
 int material_named(const std::string& name, const std::vector<Material>& materials,
@@ -105,6 +125,7 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
         (law.*member).read(own.one_of("law", names, standard), keys);
         own.finish();
     });
+    check_stiffness(pair, i, j, law);
     const bool spring = !law.tangential.is<NoFriction>();
     const bool has_rotational_spring =
         !(law.rolling.is<NoRolling>() || law.rolling.is<ConstantTorque>()) || !law.spin.is<NoSpin>();

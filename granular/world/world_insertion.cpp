@@ -18,9 +18,16 @@ std::uint32_t World::add(const Particle& p)
 {
     const auto id = static_cast<std::uint32_t>(next_id + pending.size());
     const std::string where = "particle " + std::to_string(id);
+    // Radius, velocities, mass and its inverse are stored in single precision.
+    constexpr double least = std::numeric_limits<float>::min(), most = std::numeric_limits<float>::max();
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
+    if (p.radius < least || p.radius > most)
+        refuse(where, "the radius must be in the range of single precision, 1.2e-38 to 3.4e38 m", p.radius);
     if (!finite(p.r) || !finite(p.v) || !finite(p.omega))
         refuse(where, "position and velocities must be finite", not_finite({p.r, p.v, p.omega}));
+    for (const double x : {p.v.x, p.v.y, p.v.z, p.omega.x, p.omega.y, p.omega.z})
+        if (std::abs(x) > most)
+            refuse(where, "velocities must be in the range of single precision, up to 3.4e38", x);
     if (p.material < 0 || p.material >= static_cast<int>(materials.size()))
         refuse(where, "no material has this number", p.material);
     if (!(std::abs(length(p.e) - 1) < 1e-3))
@@ -30,8 +37,6 @@ std::uint32_t World::add(const Particle& p)
     if (!(p.mass >= 0) || !std::isfinite(p.mass)) refuse(where, "the mass must not be negative", p.mass);
     const double density = materials[static_cast<std::size_t>(p.material)].density,
                  mass = p.mass > 0 ? p.mass : sphere_mass(p.radius, density);
-    // The mass and its inverse are stored in single precision.
-    constexpr double least = std::numeric_limits<float>::min();
     if (!p.fixed && !(mass >= least && mass <= 1 / least))
         refuse(where, "the mass must be in the range of single precision, 1.2e-38 to 8.5e37 kg", mass);
     if (p.attached_to >= static_cast<int>(boundaries.size()) || p.attached_to < -1)
@@ -89,7 +94,8 @@ Domain World::domain_of(const std::vector<Particle>& all) const
     const double largest = diameters.back();
     // The median and not the largest diameter: with the latter, a single large particle multiplies the number
     // of pairs of all others. A pair is listed up to the distance R_i + R_j + skin of the centres.
-    in.skin = static_cast<float>(options.skin * diameters[diameters.size() / 2]);
+    in.skin = std::max(static_cast<float>(options.skin * diameters[diameters.size() / 2]),
+                       std::numeric_limits<float>::min());
     double cell = cell_diameter(diameters, in.skin);
     if (!set_cells(grid, cell + in.skin, in.replicas)) cell = largest;
     double edge = cell + in.skin;

@@ -81,7 +81,7 @@ BY_THE_PROGRAM = [
     ("/fill/0", {"type": "lattice", "low": [0, 0, 0], "high": [1, 1, 1], "radius": 1e-5, "material": "steel"},
      "/fill: 1.08e+14 particles need about "),
     ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: does not exist"),
-    ("/fill/0/high/1", 0.05, "/fill/0/high/1: the box must be at least a diameter wide"),
+    ("/fill/0/high/1", 0.05, "/fill/0/high/1: high must be at least a diameter, 0.1, above low, 0, got 0.05"),
     ("/step", 0.1, "/step: step must not be above"),
 ]
 # Cases that both the schema and the program reject

@@ -147,7 +147,8 @@ TEST_CASE("boundaries move as their formulas prescribe", "[granular][case]")
     c["boundaries"][0].erase("mass");
     c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "sqrt(min(0,0.05-t))"};
     auto bursting = read_case(c.dump(), "file");
-    CHECK_THROWS_WITH(bursting.world->step(100), "boundary 'boundary 0': v is not finite at t = 0.0505 s");
+    CHECK_THROWS_WITH(bursting.world->step(100),
+                      Catch::StartsWith("boundary 'boundary 0': v is not finite at t = 0.0505 s, got ("));
 }
 
 TEST_CASE("a tool falls along its free axes and follows its formulas along the others", "[granular][case]")

@@ -33,7 +33,8 @@ std::vector<Particle> fallen(const Vec3& high, std::uint16_t replicas)
     granular::Random random(3);
     for (std::uint16_t replica = 0; replica < replicas; ++replica)
         for (int k = 0; k < 60; ++k) {
-            Particle p{.r = {(2 + k % 4 * 2.05) * R, (2 + k / 4 % 4 * 2.05) * R, (2.02 + k / 16 * 2.05) * R},
+            const int layer = k / 16;
+            Particle p{.r = {(2 + k % 4 * 2.05) * R, (2 + k / 4 % 4 * 2.05) * R, (2.02 + layer * 2.05) * R},
                        .radius = R};
             p.v = {random.number(-0.3, 0.3), random.number(-0.3, 0.3), -0.1};
             p.replica = replica;

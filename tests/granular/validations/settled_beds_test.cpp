@@ -51,7 +51,7 @@ struct Folder {
     /// The lines on stderr since the last call
     std::string messages() const
     {
-        const std::string all = io::read_file((path / "stderr").string(), 1 << 20);
+        std::string all = io::read_file((path / "stderr").string(), 1 << 20);
         CHECK(truncate((path / "stderr").c_str(), 0) == 0);
         lseek(STDERR_FILENO, 0, SEEK_SET);
         return all;

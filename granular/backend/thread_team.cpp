@@ -98,8 +98,8 @@ private:
         return now;
     }
 
-    /// Takes part p of a loop; false if it has been taken. All parts are taken before the next loop begins, so
-    /// that a thread that was not run for some time cannot take a part of a loop that has ended.
+    /// Takes part p of a loop; false if it has been taken. All parts are taken before the next loop begins,
+    /// so that a thread that was not run for some time cannot take a part of a loop that has ended.
     bool begin(int p, Loop now)
     {
         Loop last = state[p].begun.load(std::memory_order_relaxed);

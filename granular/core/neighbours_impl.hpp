@@ -4,9 +4,6 @@
 
 #include "granular/core/neighbours.hpp"
 #include "granular/core/searched_rows.hpp"
-#ifndef __CUDACC__
-#include "granular/core/searched_rows_cpu.hpp"
-#endif
 
 #include <algorithm>
 #include <bit>
@@ -297,7 +294,8 @@ struct Search {
     }
 };
 
-/// The partners that CountPairs finds, up to `width` of each particle, so that FillPairs does not search again
+/// The partners that CountPairs finds, up to `width` of each particle, so that FillPairs does not search
+/// again
 struct KeptPartners {
     std::uint32_t* partner;
     std::uint32_t width;

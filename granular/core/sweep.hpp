@@ -59,7 +59,7 @@ public:
     /// The 16 marks from pair n on, in the lowest bits
     unsigned marks_from(std::uint32_t n) const
     {
-        std::uint32_t bits;
+        std::uint32_t bits = 0;
         std::memcpy(&bits, reinterpret_cast<const char*>(marks.data()) + n / 8, sizeof bits);
         return bits >> n % 8 & 0xFFFF;
     }

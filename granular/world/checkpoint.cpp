@@ -76,7 +76,8 @@ std::string fault(const Domain& d, const WorldOptions& options)
                            options.high.z - options.low.z};
     for (int k = 0; k < 3; ++k) {
         const double units = double(d.grid.width[k]) * (d.grid.cells[k] - 1) + d.grid.last[k];
-        if (!(std::abs(units - size[k] / d.grid.unit) < 1))
+        // The width of each cell is rounded to a unit.
+        if (!(std::abs(units - size[k] / d.grid.unit) <= 1 + 0.5 * d.grid.cells[k]))
             return is(std::string("the cells must be as wide as the domain along ") + "xyz"[k],
                       units * d.grid.unit);
         if (!(2. * d.small + d.skin <= round_up * d.grid.width[k] * d.grid.unit))

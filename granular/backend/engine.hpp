@@ -66,8 +66,9 @@ public:
 
     /// See Neighbours::find.
     virtual void find_neighbours(const Domain& domain) = 0;
-    /// See find_loads. Without `store`, the CPU computes only the loads on boundaries here, and with a watch
-    /// those on fixed particles; it computes the other ones in advance(). See sweep.hpp.
+    /// See find_loads. Without `store`, the CPU computes only the loads of the pairs of SweepPlan::list here,
+    /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other
+    /// ones in advance().
     virtual void find_loads(const Domain& domain, float h, bool store) = 0;
     /// See advance.
     virtual float advance(const StepParameters& step) = 0;

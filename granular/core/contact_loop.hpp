@@ -60,7 +60,7 @@ struct PairView {
     HILDA_HD Float4& torque_of(std::uint32_t n) const { return torque[stored.slot(n)]; }
 };
 
-/// Pairs of a chunk of the loop on the CPU; the number of chunks is that of the elements of largest_overlap.
+/// Pairs of a chunk of the loop over all pairs on the CPU, which serves queries
 constexpr std::uint32_t loop_chunk = 2048;
 
 /// Reads the internal variables of a history from the words x, y, z and w.

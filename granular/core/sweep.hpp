@@ -54,19 +54,19 @@ public:
 
     std::vector<std::uint32_t> first_block;  ///< of each range, and the number of blocks
     std::vector<std::uint32_t> list;         ///< the pairs that are evaluated before the pass
+    /// Pairs of two particles of the list. `early`: particle i is in an earlier range than j; ordered by the
+    /// range of j, and added before it. `late`: i is in a later block than j; ordered by the block of j, and
+    /// added after the pairs of this block. The others are added in the pass, at their place.
+    std::vector<std::uint32_t> early_start, early, late_start, late;
     /// The pairs of the list, in their order, as bits
     StoredLoads stored() const { return {marks.data(), marks_before.data()}; }
-    /// The 16 marks from pair n on, in the lowest bits
+    /// The marks of 16 pairs from n on, in the lowest bits
     unsigned marks_from(std::uint32_t n) const
     {
         std::uint32_t bits = 0;
         std::memcpy(&bits, reinterpret_cast<const char*>(marks.data()) + n / 8, sizeof bits);
         return bits >> n % 8 & 0xFFFF;
     }
-    /// Those of them with i < j, by the range of j, and with j < i, by the block of j: the loads of a
-    /// particle j from the first ones precede those of the pairs of the pass, the last ones follow them.
-    std::vector<std::uint32_t> early_start, early, late_start, late;
-
     /// Sums of the loads of the pairs in which a particle is j; zero between the steps
     par::Array<par::Cpu, Load> sum_j;
     par::Array<par::Cpu, Float4> torque_j;  ///< those of the torques; empty without laws of rolling and spin

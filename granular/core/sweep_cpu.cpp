@@ -187,10 +187,12 @@ struct Sweep : detail::ContactPacks {
     {
         for (std::uint32_t m = plan.early_start[range]; m < plan.early_start[range + 1]; ++m)
             add_to_j(plan.early[m]);
+        const std::uint32_t end_of_range =
+            std::min(plan.first_block[range + 1] * SweepPlan::block, particle_count);
         Pack largest_v2(0.f);
         Hits hits;
         for (std::uint32_t b = plan.first_block[range]; b < plan.first_block[range + 1]; ++b)
-            largest_v2 = nan_larger(largest_v2, process_block(b, hits));
+            largest_v2 = nan_larger(largest_v2, process_block(b, end_of_range, hits));
         return largest(largest_v2);
     }
 
@@ -202,7 +204,7 @@ struct Sweep : detail::ContactPacks {
         if (rotates) add(plan.torque_j.data()[pairs.j[n]], pairs.torque[slot]);
     }
 
-    [[gnu::flatten]] Pack process_block(std::uint32_t number, Hits& hits) const
+    [[gnu::flatten]] Pack process_block(std::uint32_t number, std::uint32_t end_of_range, Hits& hits) const
     {
         constexpr std::uint32_t size = SweepPlan::block;
         const std::uint32_t begin = number * size, end = std::min(begin + size, particle_count);
@@ -214,9 +216,10 @@ struct Sweep : detail::ContactPacks {
         for (std::uint32_t first = arrays.start[begin]; first < last; first += Hits::most) {
             find_hits(first, std::min(first + Hits::most, last), hits);
             evaluate_hits(hits, overlaps);
-            add_hits<Float8>(hits, begin, hits.load, pairs.load, sum_i, plan.sum_j.data());
+            add_hits<Float8>(hits, begin, end_of_range, hits.load, pairs.load, sum_i, plan.sum_j.data());
             if (rotates)
-                add_hits<Float4V>(hits, begin, hits.torque, pairs.torque, torque_i, plan.torque_j.data());
+                add_hits<Float4V>(hits, begin, end_of_range, hits.torque, pairs.torque, torque_i,
+                                  plan.torque_j.data());
         }
         if (pairs.largest_overlap != nullptr)
             pairs.largest_overlap[number] = larger(pairs.largest_overlap[number], largest(overlaps));
@@ -361,10 +364,10 @@ struct Sweep : detail::ContactPacks {
     }
 
     /// Adds the loads of the contacts to the sums of their particles, in the order of the pairs. Contacts of
-    /// a particle i are consecutive, so that its sum stays in a register.
+    /// a particle i are consecutive, so that its sum stays in a register. begin: first particle of the block.
     template <class V, class Sum>
-    void add_hits(const Hits& hits, std::uint32_t begin, const Sum* of_hits, const Sum* stored, Sum* sum_i,
-                  Sum* sum_j) const
+    void add_hits(const Hits& hits, std::uint32_t begin, std::uint32_t end_of_range, const Sum* of_hits,
+                  const Sum* stored, Sum* sum_i, Sum* sum_j) const
     {
         if (hits.count + hits.ahead_count == 0) return;
         std::uint32_t last =
@@ -389,7 +392,10 @@ struct Sweep : detail::ContactPacks {
             const auto [before, n] = hits.ahead[a];
             add_range(h, before);
             h = before;
-            add_to_i(pairs.i[n], as_vector<V>(stored[pairs.stored.slot(n)]));
+            const Sum& load = stored[pairs.stored.slot(n)];
+            add_to_i(pairs.i[n], as_vector<V>(load));
+            const std::uint32_t j = pairs.j[n];
+            if (j >= begin && j < end_of_range) add_vector<V>(sum_j[j], load);  // neither early nor late
         }
         add_range(h, hits.count);
     }

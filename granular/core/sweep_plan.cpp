@@ -83,7 +83,11 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, Pairs<par::Cpu>& pair
         const auto each = [&](const auto& f) {
             for (const std::uint32_t k : list) {
                 const std::uint32_t i = pairs.i.data()[k], j = pairs.j.data()[k];
-                if ((j & PairView::boundary_bit) == 0 && (i < j) == is_early) f(key(j), k);
+                if ((j & PairView::boundary_bit) != 0) continue;
+                const std::uint32_t of_i = i / block, of_j = j / block;
+                const bool precedes = i < j && range_of_block[of_i] != range_of_block[of_j],
+                           follows = of_j < of_i;
+                if (is_early ? precedes : follows) f(key(j), k);
             }
         };
         first.assign(keys + 1, 0);

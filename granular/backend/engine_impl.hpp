@@ -12,8 +12,6 @@
 #include <type_traits>
 #include <utility>
 
-#include <omp.h>
-
 namespace hilda::granular {
 
 namespace detail {
@@ -191,8 +189,8 @@ public:
             const SweepPlan::Ahead ahead = store     ? SweepPlan::Ahead::all
                                            : watched ? SweepPlan::Ahead::with_fixed
                                                      : SweepPlan::Ahead::none;
-            if (!plan.is_for(omp_get_max_threads(), ahead)) {
-                plan.make(own.particle, own.pairs, omp_get_max_threads(), ahead);
+            if (!plan.is_for(par::threads_of_loops(), ahead)) {
+                plan.make(own.particle, own.pairs, par::threads_of_loops(), ahead);
                 resize_overlaps();
             }
         }
@@ -440,9 +438,8 @@ private:
         if (!watched) return;
         const auto tasks = [](std::size_t n, std::size_t of_task) { return (n + of_task - 1) / of_task; };
         earlier_overlap = take_largest_overlap();
-        overlaps.resize(is_cpu ? std::max({tasks(own.pairs.count, loop_chunk),
-                                           tasks(own.particle.count, SweepPlan::block),
-                                           tasks(plan.list.size(), list_chunk)})
+        overlaps.resize(is_cpu ? std::max(tasks(own.particle.count, SweepPlan::block),
+                                          tasks(plan.list.size(), list_chunk))
                                : 1);
         par::fill(on, overlaps.data(), overlaps.size(), 0.f);
     }

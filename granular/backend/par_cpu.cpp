@@ -45,7 +45,7 @@ void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes)
 
 namespace {
 
-constexpr std::size_t serial_below = 2048;  // starting threads costs more than these elements
+constexpr std::size_t serial_below = 2048;  // waking threads costs more than these elements
 
 }  // namespace
 

@@ -9,7 +9,9 @@
 
 #include <array>
 #include <atomic>
+#include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -23,15 +25,15 @@ namespace hilda::granular::par {
 
 namespace {
 
-/// A loop: its number in the upper 24 bits, modulo 2^24, and the number of its parts in the lower 8
-using Loop = std::uint32_t;
+/// A loop: its number, which does not repeat, in the upper 56 bits, and the number of its parts in the lower 8
+using Loop = std::uint64_t;
 constexpr Loop one_loop = 256;
-constexpr Loop number_of(Loop loop) { return loop & ~(one_loop - 1); }
-constexpr int parts_of(Loop loop) { return static_cast<int>(loop & (one_loop - 1)); }
+constexpr Loop number_of(Loop loop) { return loop / one_loop; }
+constexpr int parts_of(Loop loop) { return static_cast<int>(loop % one_loop); }
 static_assert(most_parts < one_loop);
 
-/// A thread that waits looks this many times, about 10 us, before it sleeps.
-constexpr int looks = 500;
+/// A thread that waits reads the value so many times, about 10 us on x86, before it sleeps.
+constexpr int polls = 500;
 
 void pause()
 {
@@ -43,13 +45,20 @@ void pause()
 /// Waits until the value differs from `old`. Returns the new value.
 Loop wait_for_change(const std::atomic<Loop>& value, Loop old)
 {
-    for (int k = 0; k < looks; ++k) {
+    for (int k = 0; k < polls; ++k) {
         const Loop now = value.load(std::memory_order_acquire);
         if (now != old) return now;
         pause();
     }
-    value.wait(old, std::memory_order_acquire);
+    value.wait(old, std::memory_order_seq_cst);
     return value.load(std::memory_order_acquire);
+}
+/// Stores the value and wakes the threads that wait for its change. The store must be visible before the
+/// number of waiting threads is read.
+void publish(std::atomic<Loop>& value, Loop now)
+{
+    value.store(now, std::memory_order_seq_cst);
+    value.notify_all();
 }
 
 class Team {
@@ -64,37 +73,49 @@ public:
     void run(int parts, void (*f)(const void*, int), const void* with)
     {
         // A loop within a loop, and one of another thread meanwhile, are executed serially.
-        const std::unique_lock<std::mutex> lock(in_use, std::try_to_lock);
-        if (!lock.owns_lock()) {
+        if (in_use.test_and_set(std::memory_order_acquire)) {
             for (int p = 0; p < parts; ++p) f(with, p);
             return;
         }
-        while (static_cast<int>(threads.size()) < parts - 1)
-            threads.emplace_back(
-                [this, p = static_cast<int>(threads.size()) + 1, now = loop.load()] { work(p, now); });
-        part = f, context = with;
+        add_threads(parts - 1);
+        part = f, context = with, failure = nullptr;
         const Loop now = announce(parts);
-        f(with, 0);
+        execute(0);
         std::array<bool, most_parts> by_others{};
         for (int p = 1; p < parts; ++p) {
             by_others[p] = !begin(p, now);
-            if (!by_others[p]) f(with, p);
+            if (!by_others[p]) execute(p);
         }
         for (int p = 1; p < parts; ++p) {
             const std::atomic<Loop>& done = state[p].done;
             for (Loop last = done.load(std::memory_order_acquire); by_others[p] && last != now;)
                 last = wait_for_change(done, last);
         }
+        const std::exception_ptr thrown = failure;
+        in_use.clear(std::memory_order_release);
+        if (thrown) std::rethrow_exception(thrown);
     }
 
 private:
+    /// Starts threads until there are so many, or the system refuses one.
+    void add_threads(int many)
+    {
+        while (!refused && static_cast<int>(threads.size()) < many) {
+            const int p = static_cast<int>(threads.size()) + 1;
+            try {
+                threads.emplace_back([this, p, now = loop.load()] { work(p, now); });
+            } catch (const std::system_error&) {
+                refused = true;
+            }
+        }
+    }
+
     /// Publishes a loop to the threads.
     Loop announce(int parts)
     {
-        const Loop last = loop.load(std::memory_order_relaxed),
-                   now = (number_of(last) + one_loop) | static_cast<Loop>(parts);
-        loop.store(now, std::memory_order_release);
-        loop.notify_all();
+        const Loop now =
+            (number_of(loop.load(std::memory_order_relaxed)) + 1) * one_loop + static_cast<Loop>(parts);
+        publish(loop, now);
         return now;
     }
 
@@ -103,8 +124,19 @@ private:
     bool begin(int p, Loop now)
     {
         Loop last = state[p].begun.load(std::memory_order_relaxed);
-        const bool is_newer = static_cast<std::int32_t>(number_of(now) - number_of(last)) > 0;
-        return is_newer && state[p].begun.compare_exchange_strong(last, now, std::memory_order_acq_rel);
+        return number_of(now) > number_of(last) &&
+               state[p].begun.compare_exchange_strong(last, now, std::memory_order_acq_rel);
+    }
+
+    /// Executes a part of the present loop. The first exception is thrown by run() when all parts are done.
+    void execute(int p)
+    {
+        try {
+            part(context, p);
+        } catch (...) {
+            const std::lock_guard<std::mutex> lock(failure_in_use);
+            if (!failure) failure = std::current_exception();
+        }
     }
 
     void work(int p, Loop last)
@@ -113,9 +145,8 @@ private:
             last = wait_for_change(loop, last);
             if (ends) return;
             if (p >= parts_of(last) || !begin(p, last)) continue;
-            part(context, p);
-            state[p].done.store(last, std::memory_order_release);
-            state[p].done.notify_one();
+            execute(p);
+            publish(state[p].done, last);
         }
     }
 
@@ -124,7 +155,8 @@ private:
         std::atomic<Loop> begun{0}, done{0};
     };
 
-    std::mutex in_use;
+    std::atomic_flag in_use;
+    bool refused = false;  ///< the system has refused a thread
     std::vector<std::thread> threads;
     std::array<PartState, most_parts> state{};
     alignas(64) std::atomic<Loop> loop{0};  ///< the present one
@@ -132,6 +164,8 @@ private:
     // of the present loop
     void (*part)(const void*, int) = nullptr;
     const void* context = nullptr;
+    std::exception_ptr failure;
+    std::mutex failure_in_use;
 };
 
 }  // namespace

@@ -12,11 +12,14 @@
 #include "io/files.hpp"
 #include "io/program.hpp"
 
-#include <malloc.h>
 #include <omp.h>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 using namespace hilda;
 using namespace hilda::granular;
@@ -95,7 +98,9 @@ int run_program(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    mallopt(M_MMAP_THRESHOLD,
-            1 << 20);  // arrays and texts of all particles return to the system when they end
+#ifdef __GLIBC__
+    // The memory of large arrays and texts returns to the system when they are freed.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
     return io::run_program([&] { return run_program(argc, argv); });
 }

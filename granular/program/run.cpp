@@ -144,7 +144,7 @@ private:
                     });
                 record();
                 if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) {
-                    w.check_finite();
+                    check_state();
                     save();
                 }
                 if (line.is_due()) line.show(progress());
@@ -154,7 +154,11 @@ private:
             line.clear();
             io::report(e);
             message = e.what(), status = e.status;
-            save_last_state();
+            try {
+                save_last_state();
+            } catch (const std::exception& not_saved) {
+                warn(io::formatted("the last finite state is not saved: %s", not_saved.what()));
+            }
             return io::exit_code::numerical_failure;
         } catch (...) {
             line.clear();
@@ -220,13 +224,12 @@ private:
     void compute_again(long last)
     {
         log("computes the steps before the failure again");
-        c.world.reset();  // its memory is needed
         Case again = read_again();
         if (identity(again.source) + again.files_read != id)
             throw io::IoError(o.file +
                               ": the case has changed during the run; the state before the failure "
                               "cannot be computed again");
-        c.world = std::move(again.world);
+        c.world = std::move(again.world);  // releases the memory of the world that has failed
         start();
         sinks = io::Sinks<CaseSetup>(setup);
         rows = 0;

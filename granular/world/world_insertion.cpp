@@ -215,11 +215,11 @@ void World::insert_pending()
     if (inserted_count > 0) {
         insert(particles());
     } else {  // without a copy
-        const std::vector<Particle> all = std::exchange(pending, {});
+        std::vector<Particle> all = std::exchange(pending, {});
         try {
             insert(all);
         } catch (...) {
-            if (inserted_count == 0) pending = all;
+            if (inserted_count == 0) pending = std::move(all);
             throw;
         }
     }

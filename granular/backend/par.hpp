@@ -76,8 +76,8 @@ private:
 constexpr int most_parts = 128;  ///< of a loop
 /// Number of parts of a loop: omp_get_max_threads(), at most most_parts
 int threads_of_loops();
-/// Calls part(context, p) for p = 0 … parts - 1 on up to `parts` threads; see thread_team.cpp. Throws the first
-/// exception of a part, when all are done.
+/// Calls part(context, p) for p = 0 … parts - 1 on up to `parts` threads; see thread_team.cpp. Throws the
+/// first exception of a part, when all are done.
 void run_parts(int parts, void (*part)(const void* context, int p), const void* context);
 
 /// Calls part(begin, end, p) for parts p of 0 … n - 1 that are of the same size. Up to `serial_below` numbers

@@ -25,7 +25,7 @@ namespace hilda::granular::par {
 
 namespace {
 
-/// A loop: its number, which does not repeat, in the upper 56 bits, and the number of its parts in the lower 8
+/// A loop: its number, which does not repeat, in the upper 56 bits, and the number of its parts in the others
 using Loop = std::uint64_t;
 constexpr Loop one_loop = 256;
 constexpr Loop number_of(Loop loop) { return loop / one_loop; }

@@ -3,8 +3,9 @@
 //
 // A loop is divided into one part per thread. The calling thread executes the first part, and then every part
 // that no other thread has begun. It waits only for threads that are within their parts. A thread that the
-// operating system does not run, because other programs use the cores, therefore does not delay a loop. At
-// the end of a parallel region of OpenMP all threads wait for each other, whether they have work or not.
+// operating system does not run, because other programs use the cores, delays a loop only if it is stopped
+// within its part. At the end of a parallel region of OpenMP all threads wait for each other, whether they
+// have work or not.
 #include "granular/backend/par.hpp"
 
 #include <array>

@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <omp.h>
+
 namespace hilda::granular {
 
 namespace detail {
@@ -189,8 +191,8 @@ public:
             const SweepPlan::Ahead ahead = store     ? SweepPlan::Ahead::all
                                            : watched ? SweepPlan::Ahead::with_fixed
                                                      : SweepPlan::Ahead::none;
-            if (!plan.is_for(par::threads_of_loops(), ahead)) {
-                plan.make(own.particle, own.pairs, par::threads_of_loops(), ahead);
+            if (!plan.is_for(omp_get_max_threads(), ahead)) {
+                plan.make(own.particle, own.pairs, omp_get_max_threads(), ahead);
                 resize_overlaps();
             }
         }

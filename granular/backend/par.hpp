@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Parallel primitives for the CPU, with threads and Thrust; par_gpu.cuh implements them with CUDA.
+/// Parallel primitives for the CPU, with OpenMP and Thrust; par_gpu.cuh implements them with CUDA.
 ///
 /// A functor is a struct with raw pointers and `HILDA_HD void operator()(std::uint32_t) const`. The results
 /// of all primitives are independent of the number of threads: sorts are stable, and floating-point numbers
@@ -73,56 +73,28 @@ private:
 
 // The functions below return after their work on the CPU is finished.
 
-constexpr int most_parts = 128;  ///< of a loop
-/// Number of parts of a loop: omp_get_max_threads(), at most most_parts
-int threads_of_loops();
-/// Calls part(context, p) for p = 0 … parts - 1 on up to `parts` threads; see thread_team.cpp. Throws the
-/// first exception of a part, when all are done.
-void run_parts(int parts, void (*part)(const void* context, int p), const void* context);
-
-/// Calls part(begin, end, p) for parts p of 0 … n - 1 that are of the same size. Up to `serial_below` numbers
-/// are one part, where threads cost more.
-template <class Part>
-void divide(std::size_t n, std::size_t serial_below, const Part& part)
-{
-    const std::size_t threads = n > serial_below ? static_cast<std::size_t>(threads_of_loops()) : 1,
-                      parts = threads < n ? threads : n;
-    if (parts <= 1) return part(std::size_t{0}, n, 0);
-    const auto one = [&](int p) {
-        const auto k = static_cast<std::size_t>(p);
-        part(n * k / parts, n * (k + 1) / parts, p);
-    };
-    using One = decltype(one);
-    run_parts(
-        static_cast<int>(parts), [](const void* of, int p) { (*static_cast<const One*>(of))(p); }, &one);
-}
-
-/// Calls f(k) for k = 0 … n - 1. Up to `serial_below` calls run on one thread.
+/// Calls f(k) for k = 0 … n - 1. Up to `serial_below` calls run on one thread, where starting threads costs
+/// more.
 template <class Functor>
 void for_each(Cpu, std::size_t n, const Functor& f, std::size_t serial_below = 2048)
 {
-    divide(n, serial_below, [&](std::size_t begin, std::size_t end, int) {
-        for (std::size_t k = begin; k < end; ++k) f(static_cast<std::uint32_t>(k));
-    });
+#pragma omp parallel for schedule(static) if (n > serial_below)
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k) f(static_cast<std::uint32_t>(k));
 }
 
 /// The maximum; NaN if one of the arguments is NaN
 HILDA_HD inline float nan_max(float a, float b) { return a != a || b <= a ? a : b; }
+#pragma omp declare reduction(nanmax:float : omp_out = nan_max(omp_out, omp_in)) initializer(omp_priv = 0)
 
 /// Maximum of 0 and f(k), k = 0 … n - 1; NaN if one of them is NaN. Up to `serial_below` calls run on one
 /// thread.
 template <class Functor>
 float largest(Cpu, std::size_t n, const Functor& f, std::size_t serial_below = 2048)
 {
-    float of_part[most_parts] = {};
-    divide(n, serial_below, [&](std::size_t begin, std::size_t end, int p) {
-        float maximum = 0;
-        for (std::size_t k = begin; k < end; ++k)
-            maximum = nan_max(maximum, f(static_cast<std::uint32_t>(k)));
-        of_part[p] = maximum;
-    });
     float maximum = 0;
-    for (const float m : of_part) maximum = nan_max(maximum, m);
+#pragma omp parallel for schedule(static) reduction(nanmax : maximum) if (n > serial_below)
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(n); ++k)
+        maximum = nan_max(maximum, f(static_cast<std::uint32_t>(k)));
     return maximum;
 }
 

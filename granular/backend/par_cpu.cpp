@@ -3,16 +3,16 @@
 #include "granular/backend/par.hpp"
 
 #include <thrust/execution_policy.h>
-#include <thrust/merge.h>
+#include <thrust/scan.h>
 #include <thrust/sort.h>
+#if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_OMP
+#include <thrust/system/omp/execution_policy.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <iterator>
 #include <new>
-#include <numeric>
-#include <vector>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -45,56 +45,26 @@ void copy_bytes(Cpu, void* to, const void* from, std::size_t bytes)
 
 namespace {
 
-constexpr std::size_t serial_below = 2048;  // waking threads costs more than these elements
+constexpr std::size_t serial_below = 2048;  // starting threads costs more than these elements
 
-}  // namespace
+}
 
 std::uint64_t exclusive_scan(Cpu, const std::uint32_t* in, std::uint32_t* out, std::size_t n)
 {
-    // The sums of the parts, then the numbers within each
-    std::uint64_t before[most_parts + 1] = {};
-    divide(n, serial_below, [&](std::size_t begin, std::size_t end, int p) {
-        before[p + 1] = std::accumulate(in + begin, in + end, std::uint64_t{0});
-    });
-    std::partial_sum(std::begin(before), std::end(before), std::begin(before));
     out[0] = 0;
-    divide(n, serial_below, [&](std::size_t begin, std::size_t end, int p) {
-        auto sum = static_cast<std::uint32_t>(before[p]);
-        for (std::size_t k = begin; k < end; ++k) out[k + 1] = sum += in[k];
-    });
+    if (n <= serial_below)
+        thrust::inclusive_scan(thrust::seq, in, in + n, out + 1);
+    else
+        thrust::inclusive_scan(thrust::device, in, in + n, out + 1);
     return out[n];
 }
 
 void stable_sort_by_key(Cpu, std::uint32_t* keys, std::uint32_t* values, std::size_t n, int /*bits*/)
 {
-    // Each part is sorted, then pairs of neighbouring parts are merged.
-    std::vector<std::size_t> first(most_parts + 1, n);
-    std::size_t parts = 0;
-    divide(n, serial_below, [&](std::size_t begin, std::size_t end, int p) {
-        thrust::stable_sort_by_key(thrust::seq, keys + begin, keys + end, values + begin);
-        first[p] = begin;
-    });
-    while (first[parts] < n) ++parts;
-    if (parts < 2) return;
-    std::vector<std::uint32_t> other_keys(n), other_values(n);
-    std::uint32_t *from_keys = keys, *from_values = values, *to_keys = other_keys.data(),
-                  *to_values = other_values.data();
-    for (std::size_t width = 1; width < parts; width *= 2) {
-        const std::size_t merges = (parts + 2 * width - 1) / (2 * width);
-        for_each(
-            Cpu(), merges,
-            [&](std::uint32_t m) {
-                const auto start = [&](std::size_t part) { return first[std::min(part, parts)]; };
-                const std::size_t a = start(2 * m * width), b = start((2 * m + 1) * width),
-                                  c = start((2 * m + 2) * width);
-                thrust::merge_by_key(thrust::seq, from_keys + a, from_keys + b, from_keys + b, from_keys + c,
-                                     from_values + a, from_values + b, to_keys + a, to_values + a);
-            },
-            1);
-        std::swap(from_keys, to_keys), std::swap(from_values, to_values);
-    }
-    if (from_keys == keys) return;
-    std::copy_n(from_keys, n, keys), std::copy_n(from_values, n, values);
+    if (n <= serial_below)
+        thrust::stable_sort_by_key(thrust::seq, keys, keys + n, values);
+    else
+        thrust::stable_sort_by_key(thrust::device, keys, keys + n, values);
 }
 
 }  // namespace hilda::granular::par

@@ -60,9 +60,6 @@ struct PairView {
     HILDA_HD Float4& torque_of(std::uint32_t n) const { return torque[stored.slot(n)]; }
 };
 
-/// Pairs of a chunk of the loop over all pairs on the CPU, which serves queries
-constexpr std::uint32_t loop_chunk = 2048;
-
 /// Reads the internal variables of a history from the words x, y, z and w.
 template <class R, class Words>
 HILDA_HD inline void set_internal(History<R>& history, const Words& words)

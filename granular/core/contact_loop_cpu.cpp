@@ -8,7 +8,7 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr std::uint32_t chunk = loop_chunk;  // pairs per task, independent of the number of threads
+constexpr std::uint32_t chunk = 2048;  // pairs per task, independent of the number of threads
 
 /// Processes one chunk of the pairs, or of a list of pairs, per call.
 struct ContactLoop : detail::ContactPacks {

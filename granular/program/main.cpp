@@ -8,6 +8,7 @@
 #include "granular/program/memory.hpp"
 #include "granular/program/run.hpp"
 #include "granular/program/validate.hpp"
+#include "granular/program/waiting_threads.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/program.hpp"
@@ -98,6 +99,7 @@ int run_program(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
+    let_threads_sleep(argc, argv);
 #ifdef __GLIBC__
     // The memory of large arrays and texts returns to the system when they are freed.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);

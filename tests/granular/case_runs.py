@@ -39,15 +39,15 @@ ATTACHED = {"particles": [{"r": [0.006 + 0.004 * k, 0.01, 5e-4], "radius": 6e-4,
 class Runs:
     def __init__(self, program, folder):
         self.program, self.folder = program, pathlib.Path(folder)
-        self.environment = dict(os.environ)
+        self.environment = dict(os.environ, OMP_WAIT_POLICY="passive")
 
     def case(self, name, **changes):
         (self.folder / f"{name}.json").write_text(json.dumps(dict(CASE, **changes)))
         return name
 
-    def start(self, name, *arguments):
+    def start(self, name, *arguments, program=None):
         threads = () if "--threads" in arguments else ("--threads", "1")
-        return subprocess.Popen([self.program, f"{name}.json", "--contacts", *threads, *arguments], cwd=self.folder,
+        return subprocess.Popen([program or self.program, f"{name}.json", "--contacts", *threads, *arguments], cwd=self.folder,
                                 env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def finish(self, name, *arguments, code=0, **options):

@@ -5,6 +5,7 @@
     options_test.py PROGRAM
 """
 import json
+import os
 import re
 import sys
 import tempfile
@@ -109,6 +110,20 @@ def strict(runs, case, watch):
     runs.finish(case, "--quiet", "--strict", "--output", "strict", "--force")
 
 
+def waiting_threads(runs, particles):
+    """Waiting threads sleep; settings of the user remain"""
+    kept = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+    for given, spins in ({}, "1000"), ({"GOMP_SPINCOUNT": "77"}, "77"):
+        output = f"spins{spins}"
+        ended = runs.run("short.json", "--output", output, "--quiet", "--threads", "2",
+                         env=dict(kept, OMP_DISPLAY_ENV="verbose", **given))
+        settings = ended.stderr.split("OPENMP DISPLAY ENVIRONMENT END")[-2]
+        expect(ended.returncode == 0 and f"GOMP_SPINCOUNT = '{spins}'" in settings,
+               f"{ended.returncode}: {ended.stderr}")
+        expect((runs.folder / output / "particles.csv").read_bytes() == particles,
+               "the waiting of threads does not change the results")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
@@ -119,7 +134,8 @@ def main():
         particles = (runs.folder / "out" / "short" / "particles.csv").read_bytes()
         resume(runs, short, particles)
         strict(runs, short, summary["watch"])
-    print("changed entries, old names, --resume and --strict")
+        waiting_threads(runs, particles)
+    print("changed entries, old names, --resume, --strict and waiting threads")
 
 
 if __name__ == "__main__":

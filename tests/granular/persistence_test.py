@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs and any number of threads.
+"""The files of hilda-granular are bitwise identical for interrupted and uninterrupted runs, any threads, any back end.
 
-    persistence_test.py WHAT PROGRAM
+    persistence_test.py WHAT PROGRAM [PROGRAM]
 
-WHAT is kills, ends, longer or threads.
+WHAT is kills, ends, longer or threads; a second PROGRAM has another back end.
 """
 import json
 import random
@@ -265,28 +265,29 @@ def longer(runs):
     print(f"ends at and between checkpoints, with and without frames; {kills} kills; {before}")
 
 
-def threads(runs):
-    """Different numbers of threads, and a GPU if there is one, with enough particles to distribute the loops"""
+def threads(runs, others):
+    """Different numbers of threads and back ends, with enough particles to distribute the loops"""
     cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
     case = runs.case("heap", end=0.015, interval=5e-3, boundaries=[CASE["boundaries"][0], cup, CASE["boundaries"][2]],
                      domain={"low": [-0.012, -0.012, -0.002], "high": [0.052, 0.052, 0.08]},
                      fill=[dict(CASE["fill"][0], low=[0, 0, 0], high=[0.04, 0.04, 0.02])])
     one = None
-    for count in (1, 2, 3, 4, 8):
-        runs.finish(case, "--output", "out", "--force", "--threads", str(count))
-        sha = runs.sha("out")
-        one = one or sha
-        expect(sha == one, f"{count} threads give the same files")
+    for program in (None, *others):
+        for count in (1, 2, 3, 4, 8):
+            runs.finish(case, "--output", "out", "--force", "--threads", str(count), program=program)
+            sha = runs.sha("out")
+            one = one or sha
+            expect(sha == one, f"{count} threads of {program or runs.program} give the same files")
     gpu = runs.start(case, "--output", "out", "--force", "--device", "cuda")
     _, err = gpu.communicate()
     expect(gpu.returncode in (0, 7), f"a GPU runs the case or is not available: {err}")
     if gpu.returncode == 0:
         expect(runs.sha("out") == one, "a GPU gives the same files")
-    print(f"1, 2, 3, 4, 8 threads{', a GPU' if gpu.returncode == 0 else ''}; {one}")
+    print(f"1, 2, 3, 4, 8 threads, {1 + len(others)} back ends{', a GPU' if gpu.returncode == 0 else ''}; {one}")
 
 
 def main():
-    what, program = sys.argv[1:]
+    what, program, *others = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(program, folder)
         if what == "kills":
@@ -296,7 +297,7 @@ def main():
         elif what == "longer":
             longer(runs)
         else:
-            threads(runs)
+            threads(runs, others)
 
 
 if __name__ == "__main__":

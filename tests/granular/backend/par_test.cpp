@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops on threads, prefix sums and sorts on the CPU.
+// The parallel primitives of the CPU: loops, maxima, prefix sums and sorts.
 #include "granular/backend/par.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -71,40 +69,6 @@ TEST_CASE("loops within loops and loops of two threads at once are complete", "[
     CHECK(counts_each_once(100, 5000));
     thread.join();
     CHECK(other);
-}
-
-TEST_CASE("an exception of any part is thrown when all parts are done", "[granular][threads]")
-{
-    const Threads set(4);
-    for (const std::uint32_t thrower : {0u, 1u, 3u}) {
-        std::atomic<int> done{0};
-        const auto part = [&](std::uint32_t k) {
-            if (k == thrower) throw std::runtime_error("part");
-            ++done;
-        };
-        CHECK_THROWS_WITH(par::for_each(par::Cpu(), 4, part, 1), "part");
-        CHECK(done == 3);
-        CHECK(counts_each_once(4, 3));
-    }
-}
-
-TEST_CASE("threads that sleep between loops are woken", "[granular][threads]")
-{
-    const Threads set(4);
-    std::mt19937 random(1);
-    for (int k = 0; k < 3000; ++k) {
-        std::this_thread::sleep_for(std::chrono::microseconds(random() % 60));
-        std::atomic<int> done{0};
-        par::for_each(
-            par::Cpu(), 4,
-            [&](std::uint32_t p) {
-                // Long enough that other threads take their parts, and the first one sleeps
-                if (p == 3 && k % 10 == 0) std::this_thread::sleep_for(std::chrono::microseconds(100));
-                ++done;
-            },
-            1);
-        REQUIRE(done == 4);
-    }
 }
 
 TEST_CASE("the largest value is that of a serial loop, and NaN if a value is NaN", "[granular][threads]")

@@ -11,7 +11,7 @@ namespace hilda::granular {
 
 void let_threads_sleep(int argc, char** argv)
 {
-    constexpr const char* spins = "1000";  // of about 10 ns; the default is 300000
+    constexpr const char* spins = "3000";  // of about 10 ns; the default is 300000
     const bool has_threads = std::any_of(argv, argv + argc, [](const char* argument) {
         return std::string_view(argument).starts_with("--threads");
     });

@@ -5,7 +5,7 @@
 
 namespace hilda::granular {
 
-/// Lets threads that wait for others sleep after about 10 us, if the command line has --threads.
+/// Lets threads that wait for others sleep after about 30 us, if the command line has --threads.
 ///
 /// By default the OpenMP runtime of GCC lets them spin for milliseconds. On a machine whose cores are busy
 /// the waiting threads then take the time of the working ones. The runtime reads its settings before main(),

@@ -113,7 +113,7 @@ def strict(runs, case, watch):
 def waiting_threads(runs, particles):
     """Waiting threads sleep; settings of the user remain"""
     kept = {key: value for key, value in os.environ.items() if key not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
-    for given, spins in ({}, "1000"), ({"GOMP_SPINCOUNT": "77"}, "77"):
+    for given, spins in ({}, "3000"), ({"GOMP_SPINCOUNT": "77"}, "77"):
         output = f"spins{spins}"
         ended = runs.run("short.json", "--output", output, "--quiet", "--threads", "2",
                          env=dict(kept, OMP_DISPLAY_ENV="verbose", **given))

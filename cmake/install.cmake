@@ -91,7 +91,7 @@ hilda_install_headers(
         granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/par.hpp granular/backend/real.hpp
         granular/core/attached.hpp granular/core/boundary.hpp granular/core/boundary_blocks.hpp
         granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
-        granular/core/material.hpp granular/core/neighbours.hpp granular/core/orientation.hpp granular/core/pair_law.hpp
+        granular/core/material.hpp granular/core/neighbours/neighbours.hpp granular/core/orientation.hpp granular/core/pair_law.hpp
         granular/core/particles.hpp granular/core/watch.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
         granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL

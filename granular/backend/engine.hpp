@@ -5,7 +5,7 @@
 
 #include "granular/core/attached.hpp"
 #include "granular/core/integrator.hpp"
-#include "granular/core/neighbours.hpp"
+#include "granular/core/neighbours/neighbours.hpp"
 #include "granular/core/watch.hpp"
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Creation of an engine, and the neighbour search on the CPU.
 #include "granular/backend/engine_impl.hpp"
-#include "granular/core/neighbours_impl.hpp"
+#include "granular/core/neighbours/neighbours_impl.hpp"
 
 namespace hilda::granular {
 

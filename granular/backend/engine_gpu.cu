@@ -4,7 +4,7 @@
 
 #include "granular/backend/engine_impl.hpp"
 #include "granular/core/loops.hpp"
-#include "granular/core/neighbours_impl.hpp"
+#include "granular/core/neighbours/neighbours_impl.hpp"
 
 namespace hilda::granular {
 

@@ -6,7 +6,7 @@
 
 #pragma once
 
-#include "granular/core/neighbours.hpp"
+#include "granular/core/neighbours/neighbours.hpp"
 #include "granular/core/orientation.hpp"
 
 namespace hilda::granular {

@@ -168,11 +168,11 @@ struct Hits {
     alignas(64) Float4 torque[size];
     std::uint32_t count = 0;
 
-    /// A contact that was evaluated before the pass, after the contact `before` of the others
-    struct Ahead {
+    /// A pair whose load was stored before the pass; `before` contacts of the others precede it
+    struct StoredContact {
         std::uint32_t before, n;
-    } ahead[most];
-    std::uint32_t ahead_count = 0;
+    } stored[most];
+    std::uint32_t stored_count = 0;
 };
 
 /// Processes one range of a plan per call.
@@ -249,7 +249,7 @@ struct Sweep : detail::ContactPacks {
     /// Lists the contacts among the pairs from `begin` on; clears those that have ended.
     [[gnu::noinline, gnu::flatten]] void find_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
     {
-        hits.count = hits.ahead_count = 0;
+        hits.count = hits.stored_count = 0;
         for (std::uint32_t first = begin; first < end; first += lanes) {
             const std::uint32_t *i = pairs.i + first, *j = pairs.j + first;
             const std::uint8_t* in_contact = pairs.in_contact + first;
@@ -275,9 +275,9 @@ struct Sweep : detail::ContactPacks {
             set_flags(pairs.in_contact + first, touching, near);
             for (unsigned ended = before & near & ~touching; ended != 0; ended &= ended - 1)
                 clear_history(first + static_cast<std::uint32_t>(__builtin_ctz(ended)));
-            for (unsigned stored = before & ahead; stored != 0; stored &= stored - 1) {
-                const auto k = static_cast<unsigned>(__builtin_ctz(stored));
-                hits.ahead[hits.ahead_count++] = {
+            for (unsigned remaining = before & ahead; remaining != 0; remaining &= remaining - 1) {
+                const auto k = static_cast<unsigned>(__builtin_ctz(remaining));
+                hits.stored[hits.stored_count++] = {
                     hits.count + static_cast<std::uint32_t>(__builtin_popcount(touching & ((1u << k) - 1))),
                     first + k};
             }
@@ -367,11 +367,11 @@ struct Sweep : detail::ContactPacks {
     /// a particle i are consecutive, so that its sum stays in a register. begin: first particle of the block.
     template <class V, class Sum>
     void add_hits(const Hits& hits, std::uint32_t begin, std::uint32_t end_of_range, const Sum* of_hits,
-                  const Sum* stored, Sum* sum_i, Sum* sum_j) const
+                  const Sum* stored_loads, Sum* sum_i, Sum* sum_j) const
     {
-        if (hits.count + hits.ahead_count == 0) return;
+        if (hits.count + hits.stored_count == 0) return;
         std::uint32_t last =
-            hits.ahead_count > 0 && hits.ahead[0].before == 0 ? pairs.i[hits.ahead[0].n] : hits.i[0];
+            hits.stored_count > 0 && hits.stored[0].before == 0 ? pairs.i[hits.stored[0].n] : hits.i[0];
         V sum = as_vector<V>(sum_i[last - begin]);
         const auto add_to_i = [&](std::uint32_t i, const V& load) {
             using Bits __attribute__((vector_size(sizeof(V)))) = std::int32_t;
@@ -388,11 +388,11 @@ struct Sweep : detail::ContactPacks {
             }
         };
         std::uint32_t h = 0;
-        for (std::uint32_t a = 0; a < hits.ahead_count; ++a) {
-            const auto [before, n] = hits.ahead[a];
+        for (std::uint32_t a = 0; a < hits.stored_count; ++a) {
+            const auto [before, n] = hits.stored[a];
             add_range(h, before);
             h = before;
-            const Sum& load = stored[pairs.stored.slot(n)];
+            const Sum& load = stored_loads[pairs.stored.slot(n)];
             add_to_i(pairs.i[n], as_vector<V>(load));
             const std::uint32_t j = pairs.j[n];
             if (j >= begin && j < end_of_range) add_vector<V>(sum_j[j], load);  // neither early nor late

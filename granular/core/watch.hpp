@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "granular/core/neighbours.hpp"
+#include "granular/core/neighbours/neighbours.hpp"
 
 namespace hilda::granular {
 

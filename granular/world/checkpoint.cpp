@@ -4,9 +4,9 @@
 // A checkpoint does not contain the neighbour list, but the positions for which it was built: the search with
 // these positions gives the same list in the same order. A restored world therefore continues with the list
 // of the saved world, and a checkpoint has no influence on the results, wherever it is taken.
+#include "granular/world/value_text.hpp"
 #include "granular/world/world_impl.hpp"
 #include "io/archive.hpp"
-#include "io/json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,15 +21,9 @@ using namespace detail;
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 11};
+using detail::shown;  // with the overloads of this file
 
-/// Texts of values, for messages
-std::string shown(double x) { return io::shortest(x); }
-std::string shown(const Vec3& v) { return '(' + shown(v.x) + ", " + shown(v.y) + ", " + shown(v.z) + ')'; }
-std::string shown(const Float4& a)
-{
-    return '(' + shown(a.x) + ", " + shown(a.y) + ", " + shown(a.z) + ", " + shown(a.w) + ')';
-}
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 11};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>
@@ -164,8 +158,8 @@ std::string changes(const Boundary& now, const Boundary& saved)
     return all.empty() ? "other bytes" : all;
 }
 
-/// The cell exists, and the particle is less than two cell widths away from its low corner: it was inside
-/// when the neighbour list was built, and has moved by less than a cell since then.
+/// The cell exists, and along each axis the particle is less than a cell away from it: it was inside when the
+/// neighbour list was built. The width of the widest cell counts, for all worlds.
 bool inside(const CellGrid& g, const Position& p)
 {
     const std::int32_t x = g.x_of(p.cell), y = g.y_of(p.cell), z = g.z_of(p.cell);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks that the state of a world and its loads are finite. A run makes them before it writes an output.
+#include "granular/world/value_text.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -28,17 +29,6 @@ using namespace detail;
 
 namespace {
 
-template <class... Numbers>
-std::string listed(double first, Numbers... others)
-{
-    std::ostringstream text;
-    text << '(' << first;
-    ((text << ", " << others), ...);
-    text << ')';
-    return text.str();
-}
-std::string listed(const Vec3& v) { return listed(v.x, v.y, v.z); }
-
 [[noreturn]] void refuse_state(const std::string& what, double t, const std::string& value)
 {
     std::ostringstream text;
@@ -56,33 +46,34 @@ void World::check_finite() const
         const Compensation& c = p.compensation.data()[k];
         const auto check = [&](const char* what, const Float4& x, const std::uint16_t* remainder) {
             const Vec3 all = to_double(x) + to_double(load_bfloat16(remainder));
-            if (!granular::finite(all)) refuse_state(name_of(p.id.data()[k]) + what, time, listed(all));
+            if (!granular::finite(all)) refuse_state(name_of(p.id.data()[k]) + what, time, shown(all));
         };
         check(": the velocity", p.velocity.data()[k], c.v);
         check(": the angular velocity", p.omega.data()[k], c.omega);
         if (p.orientation.size() == 0) continue;
         const Float4 e = p.orientation.data()[k], remainder = p.orientation_compensation.data()[k];
         if (!finite(e) || !finite(remainder))
-            refuse_state(name_of(p.id.data()[k]) + ": the orientation", time,
-                         listed(e.x + remainder.x, e.y + remainder.y, e.z + remainder.z, e.w + remainder.w));
+            refuse_state(
+                name_of(p.id.data()[k]) + ": the orientation", time,
+                shown(Float4{e.x + remainder.x, e.y + remainder.y, e.z + remainder.z, e.w + remainder.w}));
     }
     for (std::size_t k = 0; k < p.acc.size(); ++k)
         if (!finite(p.acc.data()[k]) || !finite(p.alpha.data()[k]))
             refuse_state(name_of(p.id.data()[k]) + ": the acceleration", time,
-                         listed(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
+                         shown(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
     check_histories();
     for (std::size_t b = 0; b < boundaries.size(); ++b)
         for (const Vec3& v :
              {boundaries[b].r, boundaries[b].axis, boundaries[b].v, boundaries[b].omega, boundaries[b].F})
             if (!granular::finite(v))
                 refuse_state("boundary " + std::to_string(b) + ": its place, velocity or load", time,
-                             listed(v));
+                             shown(v));
     for (const RemovedParticle& r : removed_particles)
         if (!granular::finite(r.v) || !granular::finite(r.omega))
             refuse_state(name_of(r.id) + ", which has left the domain: the velocity", time,
-                         listed(not_finite({r.v, r.omega})));
+                         shown(not_finite({r.v, r.omega})));
     if (const double x = not_finite(record); !(x == 0))
-        refuse_state("an energy or momentum of the watch", time, listed(x));
+        refuse_state("an energy or momentum of the watch", time, shown(x));
 }
 
 void World::check_histories() const
@@ -99,7 +90,7 @@ void World::check_histories() const
             name_of(id[pairs.i.data()[n]]) + " and " +
                 (boundary ? "boundary " + std::to_string(j & ~PairView::boundary_bit) : name_of(id[j])) +
                 ": the history of the contact",
-            time, listed(x.x, x.y, x.z, x.w));
+            time, shown(x));
     };
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         if (pairs.in_contact.data()[n] == 0) continue;
@@ -119,9 +110,9 @@ void World::check_loads(const Totals& totals) const
             refuse_state(name_of(c.i) + " and " +
                              (c.boundary ? "boundary " + std::to_string(c.j) : name_of(c.j)) +
                              ": the contact force",
-                         time, listed(granular::finite(c.F) ? c.T : c.F));
+                         time, shown(granular::finite(c.F) ? c.T : c.F));
     refuse_state("the sum of the contact forces", time,
-                 listed(totals.stress[0], totals.stress[4], totals.stress[8]));
+                 shown(Vec3{totals.stress[0], totals.stress[4], totals.stress[8]}));
 }
 
 }  // namespace hilda::granular

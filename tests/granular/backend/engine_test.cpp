@@ -3,7 +3,7 @@
 // if there is one. All results are bitwise equal.
 #include "granular/backend/engine_impl.hpp"
 #include "granular/core/loops.hpp"
-#include "granular/core/neighbours_impl.hpp"
+#include "granular/core/neighbours/neighbours_impl.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/core/neighbours.hpp"
+#include "granular/core/neighbours/neighbours.hpp"
 
 #ifndef __CUDACC__
 #include "granular/backend/pack.hpp"

@@ -117,7 +117,8 @@ template <class Backend>
 class Neighbours {
 public:
     /// Assigns the particles to cells, sorts them, builds the pair list, and transfers the contact histories
-    /// of the previous list to it. Throws LeftDomain before the particles are sorted, and TooManyPairs.
+    /// of the previous list to it. Throws LeftDomain before the particles are sorted, and TooManyPairs; after
+    /// TooManyPairs the histories are lost and the list must not be used.
     void find(const SearchInput& input, Particles<Backend>& particles, Pairs<Backend>& pairs);
 
     std::size_t bytes() const;

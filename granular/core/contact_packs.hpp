@@ -109,10 +109,10 @@ struct ContactPacks {
         if (pairs.rotation_history != nullptr) pairs.torque_of(n) = {};
     }
 
-    /// The loads of a pack of contacts of particles i and j, with one law; n: numbers of the pairs.
-    [[gnu::flatten]] PackLoad evaluate_particles(const PairLaw& law, const PackOverlap& overlap,
-                                                 const std::uint32_t* i, const std::uint32_t* j,
-                                                 const std::uint32_t* n, Pack& overlaps) const
+    /// The contact points of a pack of contacts of particles i and j, with one law
+    [[gnu::flatten]] ContactPoint<Pack> contact_point(const PairLaw& law, const PackOverlap& overlap,
+                                                      const std::uint32_t* i, const std::uint32_t* j,
+                                                      Pack& overlaps) const
     {
         const auto v_i = gather_rows<Pack>(particles.velocity, i),
                    v_j = gather_rows<Pack>(particles.velocity, j);
@@ -127,7 +127,14 @@ struct ContactPacks {
         if (law.lever == Lever::contact)
             move_to_contact_point(contact, Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
         overlaps = larger(overlaps, contact.delta / smaller(contact.R_i, contact.R_j));
-        return evaluate_pack(law, contact, n);
+        return contact;
+    }
+    /// The loads of a pack of contacts of particles i and j, with one law; n: numbers of the pairs.
+    [[gnu::flatten]] PackLoad evaluate_particles(const PairLaw& law, const PackOverlap& overlap,
+                                                 const std::uint32_t* i, const std::uint32_t* j,
+                                                 const std::uint32_t* n, Pack& overlaps) const
+    {
+        return evaluate_pack(law, contact_point(law, overlap, i, j, overlaps), n);
     }
 
     /// Evaluates the force law and advances the histories of the pairs n. Several lanes may hold the same

@@ -284,8 +284,7 @@ struct Sweep : detail::ContactPacks {
             if (touching == 0) continue;
             const std::uint32_t h = hits.count;
             const detail::PackOverlap overlap = found.to_floats();
-            for (unsigned remaining = prefetches ? touching : 0; remaining != 0; remaining &= remaining - 1)
-                prefetch(first + static_cast<std::uint32_t>(__builtin_ctz(remaining)));
+            if (prefetches) prefetch(partner, first);
             append(hits.n + h, first, touching);
             compress(hits.i + h, i_words, touching), compress(hits.j + h, j_words, touching);
             compress(hits.x + h, overlap.separation.x, touching);
@@ -297,13 +296,17 @@ struct Sweep : detail::ContactPacks {
         }
     }
 
-    /// Requests what the contact n reads and is not in the cache of one core: rows of its particle j, which
-    /// is far from i in memory, and its history.
-    void prefetch(std::uint32_t n) const
+    /// Requests what the contacts of a pack of pairs read and is not in the cache of one core: the histories,
+    /// and rows of the particles j, which are far from i in memory. Pairs that are not in contact are
+    /// included, because branches that the processor cannot predict cost more.
+    void prefetch(const std::uint32_t* j, std::uint32_t first) const
     {
-        const std::uint32_t j = pairs.j[n];
-        __builtin_prefetch(particles.velocity + j), __builtin_prefetch(particles.omega + j);
-        __builtin_prefetch(plan.sum_j.data() + j, 1), __builtin_prefetch(pairs.history + n, 1);
+        for (std::uint32_t k = 0; k < lanes; k += 64 / sizeof(Float4))
+            __builtin_prefetch(pairs.history + first + k, 1);
+        for (std::uint32_t k = 0; k < lanes; ++k) {
+            __builtin_prefetch(particles.velocity + j[k]), __builtin_prefetch(particles.omega + j[k]);
+            __builtin_prefetch(plan.sum_j.data() + j[k], 1);
+        }
     }
 
     [[gnu::noinline, gnu::flatten]] void evaluate_hits(Hits& hits, Pack& overlaps) const
@@ -317,16 +320,28 @@ struct Sweep : detail::ContactPacks {
             hits.q[h] = hits.q[last], hits.d2[h] = hits.d2[last], hits.D[h] = hits.D[last];
         }
         if (pairs.law == nullptr) {
-            for (std::uint32_t h = 0; h < hits.count; h += lanes) {
-                const auto pack = [&](const float* from) {
-                    Pack p;
-                    std::memcpy(&p, from + h, sizeof p);
-                    return p;
-                };
-                const detail::PackOverlap overlap{
-                    {pack(hits.x), pack(hits.y), pack(hits.z)}, pack(hits.q), pack(hits.d2), pack(hits.D)};
-                store(evaluate_particles(laws.law[0], overlap, hits.i + h, hits.j + h, hits.n + h, overlaps),
-                      hits, [&](int k) { return h + static_cast<std::uint32_t>(k); });
+            // The contact points of a few packs, then their laws: within a shorter loop the processor has
+            // operations of more than one pack to choose from.
+            constexpr std::uint32_t group = 4;
+            ContactPoint<Pack> contact[group];
+            for (std::uint32_t first = 0; first < hits.count; first += group * lanes) {
+                const std::uint32_t end = std::min(first + group * lanes, hits.count);
+                for (std::uint32_t h = first; h < end; h += lanes) {
+                    const auto pack = [&](const float* from) {
+                        Pack p;
+                        std::memcpy(&p, from + h, sizeof p);
+                        return p;
+                    };
+                    const detail::PackOverlap overlap{{pack(hits.x), pack(hits.y), pack(hits.z)},
+                                                      pack(hits.q),
+                                                      pack(hits.d2),
+                                                      pack(hits.D)};
+                    contact[(h - first) / lanes] =
+                        contact_point(laws.law[0], overlap, hits.i + h, hits.j + h, overlaps);
+                }
+                for (std::uint32_t h = first; h < end; h += lanes)
+                    store(evaluate_pack(laws.law[0], contact[(h - first) / lanes], hits.n + h), hits,
+                          [&](int k) { return h + static_cast<std::uint32_t>(k); });
             }
             return;
         }

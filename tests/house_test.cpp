@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
 
 /// The folders of each room, relative to it; "" is the room itself.
 const std::map<std::string, std::set<std::string>> folders = {
-    {"io", {""}},
+    {"io", {"", "formats"}},
     {"lie", {"", "integrators", "solver", "steps"}},
     {"dae", {"", "constraints", "forces", "joints", "outputs"}},
     {"contact",

@@ -1,142 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/mesh/mesh_file.hpp"
 
-#include "io/files.hpp"
-#include "io/json.hpp"
-#include "lie/check.hpp"
+#include "io/formats/mesh_file.hpp"
 
-#include <algorithm>
-#include <cctype>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <map>
+#include <utility>
 
 namespace hilda::contact {
 
 namespace {
 
-/// The lines of a text and their words
-class Lines {
-public:
-    Lines(std::string_view text, const std::string& name) : rest(text), name(name) {}
-
-    /// Reads the next line that is not blank; false at the end
-    bool next()
-    {
-        do {
-            if (rest.empty()) return false;
-            const std::size_t end = std::min(rest.find('\n'), rest.size());
-            line = rest.substr(0, end);
-            rest.remove_prefix(std::min(end + 1, rest.size()));
-            if (line.ends_with('\r')) line.remove_suffix(1);
-            ++number;
-            words = line;
-            first = word();
-        } while (first.empty());
-        return true;
-    }
-
-    /// The next word of the line, or ""
-    std::string_view word()
-    {
-        const std::size_t begin = std::min(words.find_first_not_of(blanks), words.size());
-        words.remove_prefix(begin);
-        const std::string_view found = words.substr(0, words.find_first_of(blanks));
-        words.remove_prefix(found.size());
-        return found;
-    }
-
-    Vec3 point()
-    {
-        Vec3 x;
-        for (int k = 0; k < 3; ++k) {
-            const std::string_view w = word();
-            const char* const begin = w.data() + (w.starts_with('+') ? 1 : 0);
-            const auto [end, error] = std::from_chars(begin, w.data() + w.size(), x[k]);
-            if (error != std::errc() || end != w.data() + w.size() || !std::isfinite(x[k]))
-                refuse("a vertex must have three finite numbers, got " + io::in_quotes(line));
-        }
-        return x;
-    }
-
-    [[noreturn]] void refuse(const std::string& what) const
-    {
-        throw lie::InvalidInput(name + ":" + std::to_string(number) + ": " + what);
-    }
-
-    std::string_view line, first;  ///< the whole line, and its first word
-    int number = 0;
-
-private:
-    static constexpr std::string_view blanks = " \t\v\f\r";
-    std::string_view rest, words;
-    const std::string& name;
-};
-
-void check_count(std::size_t triangles, const std::string& name)
+MeshFile converted(io::MeshFile from)
 {
-    if (triangles > MeshFile::max_triangles)
-        throw lie::InvalidInput(name + ": a mesh may have at most " +
-                                std::to_string(MeshFile::max_triangles) + " triangles, got " +
-                                std::to_string(triangles) + " or more");
-}
-
-/// Numbers the corners of triangles so that equal points have one number
-class Corners {
-public:
-    explicit Corners(MeshFile& mesh) : mesh(mesh) {}
-
-    int number(const Vec3& x, int line)
-    {
-        const auto [at, is_new] = known.try_emplace({x[0] + 0., x[1] + 0., x[2] + 0.},  // -0 becomes 0
-                                                    static_cast<int>(mesh.vertices.size()));
-        if (is_new) {
-            mesh.vertices.push_back(x);
-            if (line > 0) mesh.vertex_line.push_back(line);
-        }
-        return at->second;
-    }
-
-private:
-    MeshFile& mesh;
-    std::map<std::array<double, 3>, int> known;
-};
-
-MeshFile parse_stl_text(std::string_view text, const std::string& name)
-{
-    MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
-    Corners corners(mesh);
-    Lines lines(text, name);
-    Triangle triangle{};
-    int count = -1, facet_line = 0;  // corners of the facet that is being read; -1: none
-    while (lines.next()) {
-        std::string word(lines.first);
-        std::transform(word.begin(), word.end(), word.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (word == "facet") {
-            if (count >= 0) lines.refuse("a facet must end with endfacet before the next one begins");
-            count = 0;
-            facet_line = lines.number;
-        } else if (word == "vertex") {
-            if (count < 0 || count == 3) lines.refuse("a facet must have three vertices");
-            triangle[static_cast<std::size_t>(count++)] = corners.number(lines.point(), lines.number);
-        } else if (word == "endfacet") {
-            if (count != 3)
-                lines.refuse("a facet must have three vertices, got " + std::to_string(std::max(count, 0)));
-            mesh.triangles.push_back(triangle);
-            mesh.triangle_line.push_back(facet_line);
-            check_count(mesh.triangles.size(), name);
-            count = -1;
-        } else if (word != "solid" && word != "endsolid" && word != "outer" && word != "endloop") {
-            lines.refuse(
-                "a line of an STL text must begin with solid, facet, outer loop, vertex, endloop, "
-                "endfacet or endsolid, got " +
-                io::in_quotes(lines.line));
-        }
-    }
-    if (count >= 0) lines.refuse("the file ends within a facet");
+    MeshFile mesh{.name = std::move(from.name),
+                  .vertices = {},
+                  .triangles = std::move(from.triangles),
+                  .vertex_line = std::move(from.vertex_line),
+                  .triangle_line = std::move(from.triangle_line)};
+    mesh.vertices.reserve(from.vertices.size());
+    for (const auto& x : from.vertices) mesh.vertices.emplace_back(x[0], x[1], x[2]);
     return mesh;
 }
 
@@ -152,88 +33,17 @@ std::string MeshFile::message(const TriangleMesh::Fault& fault) const
 
 MeshFile parse_obj(std::string_view text, const std::string& name)
 {
-    MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
-    Lines lines(io::without_byte_order_mark(text), name);
-    while (lines.next()) {
-        if (lines.first == "v") {
-            mesh.vertices.push_back(lines.point());
-            mesh.vertex_line.push_back(lines.number);
-        } else if (lines.first == "f") {
-            // a corner is v, v/vt, v//vn or v/vt/vn; v counts from 1, or from the last vertex if negative
-            std::vector<int> corners;
-            const int known = static_cast<int>(mesh.vertices.size());
-            for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-                int v = 0;
-                const std::string_view digits = word.substr(0, word.find('/'));
-                const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
-                if (error != std::errc() || end != digits.data() + digits.size())
-                    lines.refuse("a corner of a face must be the number of a vertex, got " +
-                                 io::in_quotes(word));
-                if (v == 0 || v > known || v < -known)
-                    lines.refuse("vertex " + std::to_string(v) +
-                                 " is not defined; the number of vertices is " + std::to_string(known));
-                corners.push_back(v > 0 ? v - 1 : known + v);
-            }
-            if (corners.size() < 3)
-                lines.refuse("a face must have at least three corners, got " + io::in_quotes(lines.line));
-            for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-                mesh.triangles.push_back({corners[0], corners[k], corners[k + 1]});
-                mesh.triangle_line.push_back(lines.number);
-            }
-            check_count(mesh.triangles.size(), name);
-        }
-    }
-    return mesh;
+    return converted(io::parse_obj(text, name, MeshFile::max_triangles));
 }
 
 MeshFile parse_stl(std::string_view bytes, const std::string& name)
 {
-    constexpr std::size_t header = 80, each = 50;
-    std::uint32_t count = 0;  // the bytes of the file and of this processor are little-endian
-    if (bytes.size() >= header + sizeof count) std::memcpy(&count, bytes.data() + header, sizeof count);
-    const bool binary = bytes.size() >= header + sizeof count &&
-                        bytes.size() == header + sizeof count + each * std::size_t{count};
-    const std::string_view text = io::without_byte_order_mark(bytes);
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    const bool is_text = begin != std::string_view::npos && text.substr(begin).starts_with("solid");
-    if (!binary && is_text) return parse_stl_text(text, name);
-    if (!binary)
-        throw lie::InvalidInput(name + ": is no STL file: a text begins with solid, and a binary file of " +
-                                std::to_string(count) + " triangles has " +
-                                std::to_string(header + sizeof count + each * std::size_t{count}) +
-                                " bytes, got " + std::to_string(bytes.size()));
-    check_count(count, name);
-    MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
-    Corners corners(mesh);
-    for (std::size_t t = 0; t < count; ++t) {
-        float x[12];  // normal and three corners
-        std::memcpy(x, bytes.data() + header + sizeof count + each * t, sizeof x);
-        Triangle triangle{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 corner(x[3 + 3 * k], x[4 + 3 * k], x[5 + 3 * k]);
-            if (!corner.allFinite())
-                throw lie::InvalidInput(name + ": the corners of triangle " + std::to_string(t) +
-                                        " must be finite");
-            triangle[k] = corners.number(corner, 0);
-        }
-        mesh.triangles.push_back(triangle);
-    }
-    return mesh;
+    return converted(io::parse_stl(bytes, name, MeshFile::max_triangles));
 }
 
 MeshFile read_mesh_file(const std::string& path)
 {
-    std::string ending = path.substr(path.size() - std::min<std::size_t>(path.size(), 4));
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (ending != ".obj" && ending != ".stl")
-        throw lie::InvalidInput(path + ": the name of a mesh file must end in .obj or .stl");
-    try {
-        const std::string bytes = io::read_file(path, MeshFile::max_bytes);
-        return ending == ".obj" ? parse_obj(bytes, path) : parse_stl(bytes, path);
-    } catch (const io::IoError& e) {
-        throw lie::InvalidInput(e.what());
-    }
+    return converted(io::read_mesh_file(path, MeshFile::max_bytes, MeshFile::max_triangles));
 }
 
 }  // namespace hilda::contact

@@ -2,7 +2,7 @@
 /// Fill csv: particles of a table.
 #include "granular/case/fill.hpp"
 #include "io/archive.hpp"
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/option_values.hpp"

@@ -6,7 +6,7 @@
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 
 #include <cstdio>
 #include <filesystem>

@@ -2,7 +2,7 @@
 #include "granular/world/boundary_drawing.hpp"
 
 #include "granular/world/world.hpp"
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 
 #include <algorithm>
 #include <cmath>

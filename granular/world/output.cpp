@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/world/output.hpp"
 
-#include "io/csv.hpp"
-#include "io/vtk.hpp"
+#include "io/formats/csv.hpp"
+#include "io/formats/vtk.hpp"
 
 namespace hilda::granular {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/csv_table.hpp"
 
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "io/files.hpp"
 #include "io/option_values.hpp"
 #include "lie/check.hpp"

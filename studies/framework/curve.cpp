@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/curve.hpp"
 
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 
 #include <algorithm>
 #include <cmath>

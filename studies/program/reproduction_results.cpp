@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Reading of the results of studies for the page of `hilda reproduce`.
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"

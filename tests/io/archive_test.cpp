@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/archive.hpp"
 #include "io/files.hpp"
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -33,7 +33,7 @@ import sys
 import matrix
 
 CORE = "io,lie,dae,contact,granular"
-PARSERS = ("io/json_parser.cpp", "io/expression.cpp", "io/csv.cpp", "io/archive.cpp", "contact/mesh/mesh_file.cpp")
+PARSERS = ("io/json_parser.cpp", "io/expression.cpp", "io/formats/csv.cpp", "io/archive.cpp", "io/formats/mesh_file.cpp")
 
 
 def options(parser):

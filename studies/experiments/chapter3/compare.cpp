@@ -7,7 +7,7 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
 #include "studies/framework/sweep.hpp"

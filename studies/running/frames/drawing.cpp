@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/frames/drawing.hpp"
 
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 
 #include <algorithm>
 #include <cmath>

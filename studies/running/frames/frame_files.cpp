@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/frames/frame_files.hpp"
 
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 #include "studies/running/frames/vtk.hpp"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/frames/tables.hpp"
 
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "studies/running/frames/vtk.hpp"
 
 #include "io/files.hpp"
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 #include "studies/running/frames/drawn_patches.hpp"
 
 #include <fmt/format.h>

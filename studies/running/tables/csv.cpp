@@ -2,7 +2,7 @@
 /// Tables as CSV files: a header row with the names, numbers as the shortest decimals that read back as the
 /// same double.
 
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "io/files.hpp"
 #include "studies/running/tables/run_table.hpp"
 

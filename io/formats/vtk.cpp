@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/vtk.hpp"
+#include "io/formats/vtk.hpp"
 
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 #include "io/error.hpp"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/csv.hpp"
+#include "io/formats/csv.hpp"
 
 #include "io/error.hpp"
 #include "io/files.hpp"

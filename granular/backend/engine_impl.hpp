@@ -3,6 +3,7 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
+#include "granular/core/hand_over.hpp"
 #include "granular/core/sweep.hpp"
 
 #include <algorithm>
@@ -21,10 +22,11 @@ namespace detail {
 /// Whether a pair has a boundary with a mass
 struct HasFreeBoundary {
     const std::uint32_t* j;
-    const Boundary* boundary;
+    Surfaces surfaces;
     HILDA_HD bool operator()(std::uint32_t n) const
     {
-        return (j[n] & PairView::boundary_bit) != 0 && boundary[j[n] & ~PairView::boundary_bit].mass > 0;
+        return (j[n] & PairView::boundary_bit) != 0 &&
+               surfaces.boundary[surfaces.boundary_of(j[n] & ~PairView::boundary_bit)].mass > 0;
     }
 };
 
@@ -62,16 +64,20 @@ struct BoundaryLoad {
 struct ComputeBoundaryLoad {
     ParticleView particles;
     PairView pairs;
-    const Boundary* boundary;
+    Surfaces surfaces;
     const std::uint32_t* which;
     BoundaryLoad* out;
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const std::uint32_t n = which[k], b = pairs.j[n] & ~PairView::boundary_bit;
+        const std::uint32_t n = which[k], surface = pairs.j[n] & ~PairView::boundary_bit, i = pairs.i[n],
+                            b = surfaces.boundary_of(surface);
+        if (pairs.in_contact[n] == 0) {
+            out[k] = {{0, 0, 0}, {0, 0, 0}, b};
+            return;
+        }
         const Load& load = pairs.load_of(n);
-        const Vec3 F = -to_double(load.F),
-                   r = global_position(particles.grid, particles.position[pairs.i[n]]);
-        Vec3 T = contact_lever(boundary[b], r, load.M.w).cross(F);
+        const Vec3 F = -to_double(load.F), r = global_position(particles.grid, particles.position[i]);
+        Vec3 T = surfaces.contact_lever(surface, r, particles.velocity[i].w, load.M.w).cross(F);
         if (pairs.torque != nullptr) T -= to_double(pairs.torque_of(n));
         out[k] = {F, T, b};
     }
@@ -128,6 +134,14 @@ public:
         send(laws, all), send(law_of, law_of_pair);
     }
 
+    void set_meshes(const Meshes& all) override
+    {
+        meshes = all;
+        send(triangle, all.triangle), send(vertex, all.vertex), send(vertex_normal, all.vertex_normal);
+        send(fan_start, all.fan_start), send(fan, all.fan);
+        blocks = {};
+    }
+
     bool set_boundaries(const std::vector<Boundary>& all) override
     {
         if (all.size() == last_boundaries.size() &&
@@ -163,14 +177,14 @@ public:
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
-        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries))
-            send(block_start, blocks.start), send(block_boundary, blocks.boundary);
+        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, meshes))
+            send(block_start, blocks.start), send(block_surface, blocks.surface);
         BoundaryBlockView near = blocks.view();
-        near.start = block_start.data(), near.boundary = block_boundary.data();
+        near.start = block_start.data(), near.surface = block_surface.data();
         neighbours.find({.domain = domain,
                          .law_of = one_law ? nullptr : law_of.data(),
                          .materials = materials,
-                         .boundary = boundaries.data(),
+                         .surfaces = surfaces(),
                          .near = near,
                          .rotation_laws = rotation_laws,
                          .internal = internal},
@@ -179,8 +193,10 @@ public:
         plan.reset();
         free_pairs = 0;
         if (any_free)
-            free_pairs = list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), boundaries.data()},
-                                    with_free_boundary);
+            free_pairs =
+                list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), surfaces()}, with_free_boundary);
+        triangle_pairs = 0;
+        if (triangle.size() > 0) triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
         if (watched) prepare_watch();
     }
 
@@ -199,6 +215,10 @@ public:
         PairView pairs = pair_view();
         if (watched) pairs.largest_overlap = overlaps.data();
         const ParticleView particles = particle_view(domain, own.particle);
+        if (triangle_pairs > 0)
+            par::for_each(
+                on, triangle_pairs,
+                HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
         if constexpr (is_cpu) {
             find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
                               static_cast<std::uint32_t>(plan.list.size()));
@@ -250,7 +270,7 @@ public:
         boundary_loads.resize(free_pairs);
         par::for_each(
             on, free_pairs,
-            detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(), boundaries.data(),
+            detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(), surfaces(),
                                         with_free_boundary.data(), boundary_loads.data()});
         host_boundary_loads.resize(free_pairs);
         par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
@@ -288,7 +308,7 @@ public:
             par::for_each(on, blocks,
                           AddBoundaryLoads{.particles = particles,
                                            .pairs = pairs,
-                                           .boundary = boundaries.data(),
+                                           .surfaces = surfaces(),
                                            .before = moves ? velocities_before.data() : nullptr,
                                            .after = moves ? velocities_after.data() : nullptr,
                                            .which = with_boundary.data(),
@@ -362,7 +382,8 @@ public:
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
                with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
-               block_start.bytes() + block_boundary.bytes();
+               block_start.bytes() + block_surface.bytes() + triangle.bytes() + vertex.bytes() +
+               vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes();
     }
 
 private:
@@ -384,9 +405,12 @@ private:
                 .stored = is_cpu ? plan.stored() : StoredLoads{}};
     }
 
-    LawView law_view(float h) const
+    LawView law_view(float h) const { return {laws.data(), static_cast<int>(laws.size()), surfaces(), h}; }
+
+    Surfaces surfaces() const
     {
-        return {laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
+        return {boundaries.data(),
+                {triangle.data(), vertex.data(), vertex_normal.data(), fan_start.data(), fan.data()}};
     }
 
     /// Lists the indices of the attached particles.
@@ -520,18 +544,22 @@ private:
     par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
     BoundaryBlocks blocks;  ///< of last_boundaries
-    par::Array<Backend, std::uint32_t> block_start, block_boundary;
-    SweepPlan plan;  ///< of the CPU
+    par::Array<Backend, std::uint32_t> block_start, block_surface;
+    Meshes meshes;
+    par::Array<Backend, MeshTriangle> triangle;
+    par::Array<Backend, Vec3> vertex, vertex_normal;
+    par::Array<Backend, std::uint32_t> fan_start, fan;  ///< see MeshView
+    SweepPlan plan;                                     ///< of the CPU
     /// Arguments of find_loads() for the pass in advance()
     struct Pending {
         ParticleView particles;
         PairView pairs;
         LawView laws;
     } pending = {};
-    std::uint32_t materials = 1, free_pairs = 0;
+    std::uint32_t materials = 1, free_pairs = 0, triangle_pairs = 0;
     bool one_law = true, rotation_laws = false, internal = false, any_free = false;
-    par::Array<Backend, std::uint32_t> with_free_boundary;  ///< numbers of these pairs
-    par::Array<Backend, std::uint32_t> listed_counts;       ///< memory of list_pairs()
+    par::Array<Backend, std::uint32_t> with_free_boundary, with_triangle;  ///< numbers of these pairs
+    par::Array<Backend, std::uint32_t> listed_counts;                      ///< memory of list_pairs()
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
     std::vector<Wrench> wrenches;

@@ -34,22 +34,6 @@ NamedBoundary read_motion(ObjectReader& o, const std::string& name)
     return all;
 }
 
-/// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free and F.
-void read_body(ObjectReader& o, NamedBoundary& body)
-{
-    Boundary& b = body.boundary;
-    read_vector(o, "omega", b.omega, body.motion.omega);
-    if (!o.has("mass")) return;
-    b.mass = o.positive("mass");
-    b.inertia = o.not_negative("inertia", 0);
-    if (b.inertia > 0 && body.motion.omega)
-        o.fail("omega", "omega must be three numbers if inertia is positive");
-    b.free = o.flags("free", {true, true, true});
-    if (body.motion.v && !finite((*body.motion.v)(0)))
-        o.fail("v", "v must be finite at t = 0 if the boundary has a mass");
-    read_vector(o, "F", b.F, body.motion.F);
-}
-
 /// The sides of a box as planes, without those that `open` lists
 std::vector<NamedBoundary> read_box(ObjectReader& o, NamedBoundary box)
 {
@@ -197,6 +181,21 @@ const bool registered =
                                      read_round<Boundary::Shape::sphere>});
 
 }  // namespace
+
+void read_body(ObjectReader& o, NamedBoundary& body)
+{
+    Boundary& b = body.boundary;
+    read_vector(o, "omega", b.omega, body.motion.omega);
+    if (!o.has("mass")) return;
+    b.mass = o.positive("mass");
+    b.inertia = o.not_negative("inertia", 0);
+    if (b.inertia > 0 && body.motion.omega)
+        o.fail("omega", "omega must be three numbers if inertia is positive");
+    b.free = o.flags("free", {true, true, true});
+    if (body.motion.v && !finite((*body.motion.v)(0)))
+        o.fail("v", "v must be finite at t = 0 if the boundary has a mass");
+    read_vector(o, "F", b.F, body.motion.F);
+}
 
 std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name)
 {

@@ -4,13 +4,18 @@
 #pragma once
 
 #include "granular/case/object_reader.hpp"
+#include "granular/mesh/triangle_mesh.hpp"
 #include "io/type_schema.hpp"
+
+#include <optional>
 
 namespace hilda::granular {
 
 struct NamedBoundary {
     std::string name;
     Boundary boundary;
+    std::optional<TriangleMesh> mesh = {};  ///< of a boundary with Shape::mesh
+    bool two_sided = false;                 ///< whether the particles may be on both sides of the mesh
     BoundaryMotion motion = {};  ///< prescribed motion and load; the boundary number is not set
 
     /// Whether the boundary moves under its loads or by a prescribed velocity
@@ -29,6 +34,9 @@ struct BoundaryType {
     /// boundary, or several with other names. Throws io::PlacedError.
     std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);
 };
+
+/// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free and F.
+void read_body(ObjectReader& o, NamedBoundary& body);
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.

@@ -190,6 +190,27 @@ private:
         o.finish();
     }
 
+    /// Notes a mesh that reaches a periodic side, across which it has no images.
+    void check_images(const ObjectReader& o, const NamedBoundary& b)
+    {
+        const Vec3 low = out.world->low(), high = out.world->high();
+        const double lows[] = {low.x, low.y, low.z}, highs[] = {high.x, high.y, high.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!world.periodic[k]) continue;
+            const bool reaches =
+                std::any_of(b.mesh->vertex.begin(), b.mesh->vertex.end(), [&](const Vec3& v) {
+                    const Vec3 r = b.boundary.r + rotated(b.boundary.p, v);
+                    const double at[] = {r.x, r.y, r.z};
+                    return at[k] <= lows[k] || at[k] >= highs[k];
+                });
+            if (reaches)
+                out.notices.push_back(
+                    o.place() + ": the mesh reaches a periodic side along " + "xyz"[k] +
+                    ", across which it has no images: it acts as a periodic one only if its "
+                    "shape does not change along this axis");
+        }
+    }
+
     void boundary(ObjectReader& o)
     {
         const int boundary_material = material(o);
@@ -202,7 +223,10 @@ private:
             if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
                 o.fail("name", "two boundaries have the same name, got " + io::described(n.name));
             n.boundary.material = boundary_material;
-            n.motion.boundary = o.located([&] { return out.world->add(n.boundary); });
+            n.motion.boundary = o.located([&] {
+                return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
+            });
+            if (n.mesh) check_images(o, n);
             if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
             if (n.moves()) out.moving.push_back(n.motion.boundary);
             if (n.boundary.mass > 0 && free.empty()) free = o.pointer();

@@ -20,10 +20,9 @@ struct AddContacts {
     {
         const std::uint32_t i = pairs.i[n], j = pairs.j[n];
         const Float4 v_i = particles.velocity[i], w_i = particles.omega[i];
-        if ((j & PairView::boundary_bit) != 0) {
-            const Boundary& b = laws.boundary[j & ~PairView::boundary_bit];
-            return find_boundary_contact(contact, particles.grid, particles.position[i], v_i, w_i, b);
-        }
+        if ((j & PairView::boundary_bit) != 0)
+            return find_boundary_contact(contact, particles.grid, particles.position[i], v_i, w_i,
+                                         laws.surfaces, j & ~PairView::boundary_bit);
         const Float4 v_j = particles.velocity[j], w_j = particles.omega[j];
         const Difference d = difference(particles.grid, particles.position[i], particles.position[j]);
         const std::int64_t D = radius_in_units(v_i.w, units_per_metre) +

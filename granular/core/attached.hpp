@@ -22,18 +22,6 @@ struct BoundaryPose {
     EulerParameters<double> p;  ///< of the rotation from the frame of the boundary to the global frame
 };
 
-/// A(p) X for Euler parameters of length 1                                              Fang (2022), Eq. 2.1a
-HILDA_HD inline Vec3 rotated(const EulerParameters<double>& p, const Vec3& X)
-{
-    const Vec3 t = 2 * p.e.cross(X);
-    return X + p.e0 * t + p.e.cross(t);
-}
-/// A(p)ᵀ x
-HILDA_HD inline Vec3 rotated_back(const EulerParameters<double>& p, const Vec3& x)
-{
-    return rotated({p.e0, -p.e}, x);
-}
-
 constexpr std::uint32_t not_listed = ~std::uint32_t{0};
 
 /// Lists the index of particle k, if it is attached. For the call after a neighbour search.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Boundaries: planes, cylinders, cones and spheres, with prescribed motion or moving as rigid bodies under
-/// their loads.
+/// Boundaries: planes, cylinders, cones, spheres and triangle meshes, with prescribed motion or moving as
+/// rigid bodies under their loads.
 
 #pragma once
 
-#include "granular/backend/real.hpp"
+#include "granular/core/orientation.hpp"
 
 #include <array>
 #include <cstdint>
@@ -22,14 +22,16 @@ struct Boundary {
         plane,     ///< plane through r; its normal `axis` points to the particles
         cylinder,  ///< infinite cylinder; its axis is the line through r along `axis`
         cone,      ///< infinite cone with apex r that opens along `axis`; half angle by `cosine` and `sine`
-        sphere     ///< sphere with centre r
+        sphere,    ///< sphere with centre r
+        mesh       ///< triangles; see surfaces/surfaces.hpp
     } shape = Shape::plane;
     std::int32_t inside = 0;      ///< 1: particles are inside the cylinder, cone or sphere; 0: outside
     Vec3 r = {0, 0, 0};           ///< reference point [m]
     Vec3 axis = {0, 0, 1};        ///< unit vector
     double radius = 0;            ///< of a cylinder or sphere [m]
     double cosine = 1, sine = 0;  ///< of the half angle of a cone
-    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< velocity of r [m/s], angular velocity [rad/s]
+    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};       ///< velocity of r [m/s], angular velocity [rad/s]
+    EulerParameters<double> p = {1, {0, 0, 0}};  ///< orientation of a mesh about r
     std::int32_t material = 0;
 
     // members of a rigid body boundary
@@ -43,7 +45,8 @@ struct Boundary {
     HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };
 
-constexpr double infinite_curvature = 1e300;  ///< of the apex of a cone [1/m]
+constexpr double infinite_curvature = 1e300;   ///< of the apex of a cone [1/m]
+constexpr double no_contact_distance = 1e300;  ///< Nearest::distance of a surface without a closest point [m]
 
 /// Signed distance of a point from a boundary [m], negative behind the surface, the unit normal at the
 /// closest point, which points to the particles, and the mean curvature there [1/m]: half the divergence of
@@ -58,9 +61,11 @@ struct Nearest {
 /// On the axis of a cylinder or cone and at the centre of a sphere the distance is exact and |n| < 1, because
 /// the closest point is not unique. Inside a cone, for points behind its apex, the distance is negative but
 /// not the true distance. The curvature of a cone is cos(half angle)/(2 ρ) at the distance ρ of the closest
-/// point from the axis, and infinite at the apex.
+/// point from the axis, and infinite at the apex. For a mesh the distance is no_contact_distance: its
+/// triangles are surfaces of their own.
 HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
 {
+    if (b.shape == Boundary::Shape::mesh) return {no_contact_distance, b.axis};
     const Vec3 d = point - b.r;
     const double sign = b.inside != 0 ? -1 : 1;
     switch (b.shape) {
@@ -87,6 +92,7 @@ HILDA_HD inline Nearest nearest(const Boundary& b, const Vec3& point)
                     sign * (rho_at_surface > 0 ? b.cosine / (2 * rho_at_surface) : infinite_curvature)};
         }
         case Boundary::Shape::sphere:
+        case Boundary::Shape::mesh:
             break;
     }
     const double from_centre = d.norm();
@@ -128,14 +134,6 @@ inline std::array<Boundary, 5> open_box(const Vec3& low, const Vec3& high)
 HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
 {
     return b.v + b.omega.cross(point - b.r);
-}
-
-/// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is closest
-/// to the centre of the particle, or to the one at `depth` below it [m]
-HILDA_HD inline Vec3 contact_lever(const Boundary& b, const Vec3& centre, double depth)
-{
-    const Nearest near = nearest(b, centre);
-    return centre - (near.distance + depth) * near.n - b.r;
 }
 
 }  // namespace hilda::granular

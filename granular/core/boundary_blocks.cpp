@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/core/boundary_blocks.hpp"
 
+#include "granular/core/surfaces/surfaces.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -33,7 +35,8 @@ void BoundaryBlocks::make_blocks(const CellGrid& grid)
     }
 }
 
-bool BoundaryBlocks::update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries)
+bool BoundaryBlocks::update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries,
+                            const Meshes& meshes)
 {
     bool changed = surfaces.size() != boundaries.size();
     if (reach != reach_of || !same_cells(grid, of)) {
@@ -44,30 +47,76 @@ bool BoundaryBlocks::update(const CellGrid& grid, double reach, const std::vecto
     }
     near.resize(boundaries.size());
     for (std::size_t b = 0; b < boundaries.size(); ++b) {
-        const Surface now = surface(boundaries[b]);
+        const Surface now = surface_of(boundaries[b]);
         if (b < surfaces.size() && surfaces[b] == now) continue;
         near[b].clear();
-        search(boundaries[b], {{0, 0, 0}, blocks}, near[b]);
+        if (boundaries[b].shape != Boundary::Shape::mesh)
+            search(boundaries[b], {{0, 0, 0}, blocks}, static_cast<std::uint32_t>(b), near[b]);
+        for (const Meshes::Part& part : meshes.part)
+            for (std::uint32_t t = part.first; part.boundary == b && t < part.end; ++t)
+                search_triangle(boundaries[b], meshes, t, near[b]);
         changed = true;
     }
     if (!changed) return false;
     surfaces.clear();
-    for (const Boundary& b : boundaries) surfaces.push_back(surface(b));
+    for (const Boundary& b : boundaries) surfaces.push_back(surface_of(b));
 
     const std::size_t count = static_cast<std::size_t>(blocks[0]) * blocks[1] * blocks[2];
     start.assign(count + 1, 0);
     for (const auto& of_boundary : near)
-        for (const std::uint32_t block : of_boundary) ++start[block + 1];
+        for (const Near& n : of_boundary) ++start[n.block + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
-    boundary.resize(start.back());
+    surface.resize(start.back());
     std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-    for (std::uint32_t b = 0; b < near.size(); ++b)
-        for (const std::uint32_t block : near[b]) boundary[next[block]++] = b;
+    const auto put = [&](bool of_mesh) {
+        for (std::size_t b = 0; b < near.size(); ++b)
+            if ((boundaries[b].shape == Boundary::Shape::mesh) == of_mesh)
+                for (const Near& n : near[b]) surface[next[n.block]++] = n.surface;
+    };
+    put(false), put(true);  // in ascending order
     return true;
 }
 
+/// Adds the blocks that are near the triangle t of a mesh.
+void BoundaryBlocks::search_triangle(const Boundary& b, const Meshes& meshes, std::uint32_t t,
+                                     std::vector<Near>& found) const
+{
+    const MeshTriangle& T = meshes.triangle[t];
+    Vec3 low{1e300, 1e300, 1e300}, high = -low;
+    for (const std::uint32_t v : T.vertex) {
+        const Vec3 r = b.r + rotated(b.p, meshes.vertex[v]);
+        low = {std::min(low.x, r.x), std::min(low.y, r.y), std::min(low.z, r.z)};
+        high = {std::max(high.x, r.x), std::max(high.y, r.y), std::max(high.z, r.z)};
+    }
+    const Vec3 n = rotated(b.p, T.face.n), a = b.r + rotated(b.p, meshes.vertex[T.vertex[0]]);
+    const double lows[] = {low.x, low.y, low.z}, highs[] = {high.x, high.y, high.z};
+    std::int32_t first[3], last[3];
+    double size[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double width = of.width[k] * of.unit, margin = reach_of + 0.01 * width;
+        size[k] = width * (1 << shift);
+        const auto block = [&](double x) {
+            return static_cast<std::int32_t>(std::clamp(std::floor((x - of.low[k]) / size[k]), -1., 1e9));
+        };
+        first[k] = std::max(block(lows[k] - margin), 0);
+        last[k] = std::min(block(highs[k] + margin), blocks[k] - 1);
+    }
+    const double across = 0.5 * (std::abs(n.x) * size[0] + std::abs(n.y) * size[1] + std::abs(n.z) * size[2]);
+    const double most = across + reach_of + 0.01 * std::max({size[0], size[1], size[2]});
+    for (std::int32_t z = first[2]; z <= last[2]; ++z)
+        for (std::int32_t y = first[1]; y <= last[1]; ++y)
+            for (std::int32_t x = first[0]; x <= last[0]; ++x) {
+                const Vec3 centre{of.low[0] + (x + 0.5) * size[0], of.low[1] + (y + 0.5) * size[1],
+                                  of.low[2] + (z + 0.5) * size[2]};
+                if (std::abs((centre - a).dot(n)) > most) continue;
+                found.push_back({static_cast<std::uint32_t>((z * blocks[1] + y) * blocks[0] + x),
+                                 Surfaces::first_triangle + t});
+            }
+}
+
 /// Adds the blocks of a box that are near the boundary.
-void BoundaryBlocks::search(const Boundary& b, const Box& box, std::vector<std::uint32_t>& found) const
+void BoundaryBlocks::search(const Boundary& b, const Box& box, std::uint32_t number,
+                            std::vector<Near>& found) const
 {
     // A hundredth of a cell on each side allows for rounding.
     Vec3 centre{0, 0, 0};
@@ -85,21 +134,21 @@ void BoundaryBlocks::search(const Boundary& b, const Box& box, std::vector<std::
     const std::int32_t first = box.first[longest], last = box.last[longest];
     if (last - first == 1) {
         const std::int32_t row = box.first[2] * blocks[1] + box.first[1];
-        found.push_back(static_cast<std::uint32_t>(row * blocks[0] + box.first[0]));
+        found.push_back({static_cast<std::uint32_t>(row * blocks[0] + box.first[0]), number});
         return;
     }
     Box part = box;
     part.last[longest] = first + (last - first) / 2;
-    search(b, part, found);
+    search(b, part, number, found);
     part = box;
     part.first[longest] = first + (last - first) / 2;
-    search(b, part, found);
+    search(b, part, number, found);
 }
 
 std::size_t BoundaryBlocks::bytes() const
 {
-    std::size_t words = start.capacity() + boundary.capacity();
-    for (const auto& of_boundary : near) words += of_boundary.capacity();
+    std::size_t words = start.capacity() + surface.capacity();
+    for (const auto& of_boundary : near) words += 2 * of_boundary.capacity();
     return words * sizeof(std::uint32_t) + surfaces.capacity() * sizeof(Surface);
 }
 

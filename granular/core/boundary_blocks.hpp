@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The boundaries near each block of cells, so that a neighbour search does not test all boundaries for each
+/// The surfaces near each block of cells, so that a neighbour search does not test all of them for each
 /// particle.
 
 #pragma once
 
-#include "granular/core/boundary.hpp"
 #include "granular/core/particles.hpp"
+#include "granular/core/surfaces/meshes.hpp"
 
 #include <array>
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace hilda::granular {
 
-/// Blocks of cells and the boundaries near them, for the functors. The boundaries of block b are
-/// boundary[start[b]] … boundary[start[b + 1] - 1], in ascending order.
+/// Blocks of cells and the surfaces near them, for the functors. Those of block b have the numbers
+/// surface[start[b]] … surface[start[b + 1] - 1], in ascending order; see Surfaces.
 struct BoundaryBlockView {
-    const std::uint32_t *start = nullptr, *boundary = nullptr;
+    const std::uint32_t *start = nullptr, *surface = nullptr;
     std::int32_t shift = 0;                   ///< a block has 2^shift cells along each axis
     std::int32_t blocks_x = 0, blocks_y = 0;  ///< number of blocks along x and y
 
@@ -27,21 +27,23 @@ struct BoundaryBlockView {
     }
 };
 
-/// Blocks of cells with the boundaries whose surface is within the reach of a particle in one of their cells.
+/// Blocks of cells with the surfaces that are within the reach of a particle in one of their cells.
 ///
 /// The boxes of the blocks are halved repeatedly. A boundary is not near a box if its distance from the
 /// centre, less half of the diagonal, is above the reach: the signed distance changes by at most 1 m per m.
-/// Points behind a boundary have a negative distance, so that it is listed there.
+/// Points behind a boundary have a negative distance, so that it is listed there. A triangle is near the
+/// blocks that its box and its plane meet, both enlarged by the reach.
 class BoundaryBlocks {
 public:
     /// Lists the boundaries for a grid. `reach`: largest radius and skin [m]. Only the boundaries that have
     /// changed since the previous call are searched. Returns whether the lists have changed.
-    bool update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries);
+    bool update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries,
+                const Meshes& meshes);
 
-    /// With pointers to `start` and `boundary`
-    BoundaryBlockView view() const { return {start.data(), boundary.data(), shift, blocks[0], blocks[1]}; }
+    /// With pointers to `start` and `surface`
+    BoundaryBlockView view() const { return {start.data(), surface.data(), shift, blocks[0], blocks[1]}; }
 
-    std::vector<std::uint32_t> start, boundary;  ///< see BoundaryBlockView
+    std::vector<std::uint32_t> start, surface;  ///< see BoundaryBlockView
 
     std::size_t bytes() const;
 
@@ -50,19 +52,25 @@ private:
         std::array<std::int32_t, 3> first, last;  ///< blocks, `last` excluded
     };
     void make_blocks(const CellGrid& grid);
-    void search(const Boundary& b, const Box& box, std::vector<std::uint32_t>& found) const;
+    struct Near {
+        std::uint32_t block, surface;
+    };
+    void search(const Boundary& b, const Box& box, std::uint32_t number, std::vector<Near>& found) const;
+    void search_triangle(const Boundary& b, const Meshes& meshes, std::uint32_t t,
+                         std::vector<Near>& found) const;
 
     /// Members of a boundary that determine its surface
     struct Surface {
         Boundary::Shape shape;
         std::int32_t inside;
         Vec3 r, axis;
-        double radius, cosine, sine;
+        double radius, cosine, sine, e0;
+        Vec3 e;
         bool operator==(const Surface&) const = default;
     };
-    static Surface surface(const Boundary& b)
+    static Surface surface_of(const Boundary& b)
     {
-        return {b.shape, b.inside, b.r, b.axis, b.radius, b.cosine, b.sine};
+        return {b.shape, b.inside, b.r, b.axis, b.radius, b.cosine, b.sine, b.p.e0, b.p.e};
     }
 
     CellGrid of;           ///< the grid of the lists
@@ -70,7 +78,7 @@ private:
     std::int32_t shift = 0;
     std::array<std::int32_t, 3> blocks = {0, 0, 0};
     std::vector<Surface> surfaces;
-    std::vector<std::vector<std::uint32_t>> near;  ///< blocks near each boundary
+    std::vector<std::vector<Near>> near;  ///< blocks near each boundary
 };
 
 }  // namespace hilda::granular

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "granular/backend/par.hpp"
-#include "granular/core/boundary.hpp"
 #include "granular/core/pair_law.hpp"
 #include "granular/core/particles.hpp"
+#include "granular/core/surfaces/surfaces.hpp"
 
 #include <bit>
 
@@ -37,7 +37,7 @@ struct StoredLoads {
 };
 
 /// The neighbour list with loads and histories. i is the index of a particle. j is the index of a particle,
-/// or that of a boundary with boundary_bit set.
+/// or the number of a surface with boundary_bit set.
 struct PairView {
     static constexpr std::uint32_t boundary_bit = 0x80000000u;
 
@@ -77,11 +77,11 @@ struct ParticleView {
     float radius = 0;        ///< common radius of all particles [m]; 0 if they differ
 };
 
-/// The force laws and boundaries that the contact loop reads
+/// The force laws and surfaces that the contact loop reads
 struct LawView {
     const PairLaw* law;
     int laws;
-    const Boundary* boundary;
+    Surfaces surfaces;
     float h;  ///< step size [s]
 };
 
@@ -130,14 +130,16 @@ HILDA_HD inline void set_rates(ContactPoint<R>& contact, const Vec<R>& v, const 
     contact.omega = omega_i - omega_j;
 }
 
-/// Sets all of the contact of a particle with a boundary but the step size. The geometry is computed in
+/// Sets all of the contact of a particle with surface k but the step size. The geometry is computed in
 /// double precision. Returns false if there is no overlap.
 HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const CellGrid& grid,
                                            const Position& p, const Float4& v, const Float4& w,
-                                           const Boundary& b, Lever lever = Lever::radius)
+                                           const Surfaces& surfaces, std::uint32_t k,
+                                           Lever lever = Lever::radius)
 {
+    const Boundary& b = surfaces.boundary[surfaces.boundary_of(k)];
     const Vec3 r = global_position(grid, p);
-    const Nearest near = nearest(b, r);
+    const Nearest near = surfaces.nearest(k, r, v.w);
     const double delta = v.w - near.distance;
     if (!(delta > 0)) return false;
     const auto narrow = [](const Vec3& a) {

@@ -126,18 +126,23 @@ struct ContactLoop : detail::ContactPacks {
             laws, [&](std::uint32_t n) { return pairs.law[n]; }, which, number, sorted, f);
     }
 
-    /// Contacts with boundaries, in runs of pairs with the same boundary
+    /// Contacts with surfaces, in runs of pairs with the same plane, or with boundaries of other shapes
     void evaluate_boundaries(const PairLaw& law, const std::uint32_t* which, std::uint32_t number,
                              Pack& overlaps) const
     {
         for (std::uint32_t first = 0, last = 0; first < number; first = last) {
-            const std::uint32_t j = pairs.j[which[first]];
-            while (last < number && pairs.j[which[last]] == j) ++last;
-            const Boundary& b = laws.boundary[j & ~PairView::boundary_bit];
-            if (b.shape == Boundary::Shape::plane)
-                evaluate_plane(law, b, which + first, last - first, overlaps);
-            else
-                evaluate_boundary(law, b, which + first, last - first, overlaps);
+            const std::uint32_t j = pairs.j[which[first]], k = j & ~PairView::boundary_bit;
+            const auto is_plane = [&](std::uint32_t surface) {
+                return !Surfaces::is_triangle(surface) &&
+                       laws.surfaces.boundary[surface].shape == Boundary::Shape::plane;
+            };
+            if (is_plane(k)) {
+                while (last < number && pairs.j[which[last]] == j) ++last;
+                evaluate_plane(law, laws.surfaces.boundary[k], which + first, last - first, overlaps);
+                continue;
+            }
+            while (last < number && !is_plane(pairs.j[which[last]] & ~PairView::boundary_bit)) ++last;
+            evaluate_surfaces(law, which + first, last - first, overlaps);
         }
     }
 
@@ -225,10 +230,10 @@ struct ContactLoop : detail::ContactPacks {
         store_loads(evaluate_pack(law, contact, n), n);
     }
 
-    /// Contacts with any boundary: the geometry is computed per pair in double precision, the force law per
-    /// pack.
-    void evaluate_boundary(const PairLaw& law, const Boundary& b, const std::uint32_t* which,
-                           std::uint32_t number, Pack& overlaps) const
+    /// Contacts with surfaces of any shape: the geometry is computed per pair in double precision, the force
+    /// law per pack.
+    void evaluate_surfaces(const PairLaw& law, const std::uint32_t* which, std::uint32_t number,
+                           Pack& overlaps) const
     {
         // a pack of contacts in the memory layout of ContactPoint<Pack>
         constexpr int values = sizeof(ContactPoint<float>) / sizeof(float);
@@ -255,7 +260,8 @@ struct ContactLoop : detail::ContactPacks {
             const std::uint32_t at = which[m], i = pairs.i[at];
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],
-                                       particles.omega[i], b, law.lever)) {
+                                       particles.omega[i], laws.surfaces,
+                                       pairs.j[at] & ~PairView::boundary_bit, law.lever)) {
                 if (pairs.in_contact[at] != 0) clear_contact(at);
                 continue;
             }

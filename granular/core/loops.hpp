@@ -45,7 +45,7 @@ struct FindLoad {
         if ((j & PairView::boundary_bit) != 0) {
             overlaps =
                 find_boundary_contact(contact, particles.grid, p_i, particles.velocity[i], particles.omega[i],
-                                      laws.boundary[j & ~PairView::boundary_bit], law().lever);
+                                      laws.surfaces, j & ~PairView::boundary_bit, law().lever);
         } else {
             // Most listed pairs are not in contact: for these only positions and radii are read.
             const float common = particles.radius;

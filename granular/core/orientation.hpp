@@ -16,6 +16,18 @@ struct EulerParameters {
     Vec<R> e;
 };
 
+/// A(p) X for Euler parameters of length 1                                              Fang (2022), Eq. 2.1a
+HILDA_HD inline Vec<double> rotated(const EulerParameters<double>& p, const Vec<double>& X)
+{
+    const Vec<double> t = 2 * p.e.cross(X);
+    return X + p.e0 * t + p.e.cross(t);
+}
+/// A(p)ᵀ x
+HILDA_HD inline Vec<double> rotated_back(const EulerParameters<double>& p, const Vec<double>& x)
+{
+    return rotated({p.e0, -p.e}, x);
+}
+
 /// Increment d of the Euler parameters for a rotation by `angle`, a rotation vector in the global frame
 /// [rad].
 ///

@@ -57,18 +57,21 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, Pairs<par::Cpu>& pair
         par::fill(par::Cpu(), pairs.torque.data(), list.size(), Float4{});
     }
 
-    // Pairs of particles first, then those with each boundary, so that packs have one boundary. They keep
-    // their order otherwise.
-    const auto boundary_number = [&](std::uint32_t k) {
-        const std::uint32_t j = pairs.j.data()[k];
-        return (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) + 1 : 0;
+    // Pairs of particles first, then those with each boundary, so that packs have one boundary, then those
+    // with triangles. They keep their order otherwise.
+    std::uint32_t boundaries = 0;
+    const auto surface = [&](std::uint32_t k) { return pairs.j.data()[k] & ~PairView::boundary_bit; };
+    const auto has_surface = [&](std::uint32_t k) {
+        return (pairs.j.data()[k] & PairView::boundary_bit) != 0;
     };
-    std::vector<std::uint32_t> place(2);
-    for (const std::uint32_t k : list) {
-        const std::uint32_t to = boundary_number(k) + 1;
-        if (to >= place.size()) place.resize(to + 1);
-        ++place[to];
-    }
+    for (const std::uint32_t k : list)
+        if (has_surface(k) && !Surfaces::is_triangle(surface(k)))
+            boundaries = std::max(boundaries, surface(k) + 1);
+    const auto boundary_number = [&](std::uint32_t k) {
+        return has_surface(k) ? std::min(surface(k), boundaries) + 1 : 0;
+    };
+    std::vector<std::uint32_t> place(boundaries + 3);
+    for (const std::uint32_t k : list) ++place[boundary_number(k) + 1];
     for (std::size_t b = 1; b < place.size(); ++b) place[b] += place[b - 1];
     std::vector<std::uint32_t> by_boundary(list.size());
     for (const std::uint32_t k : list) by_boundary[place[boundary_number(k)]++] = k;

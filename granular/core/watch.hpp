@@ -167,7 +167,7 @@ struct HasFixedParticle {
 struct AddBoundaryLoads {
     ParticleView particles;
     PairView pairs;
-    const Boundary* boundary;
+    Surfaces surfaces;
     const BoundaryVelocity *before, *after;  ///< by boundary number; nullptr if none moves
     const std::uint32_t* which;              ///< numbers of these pairs
     std::uint32_t count;
@@ -192,15 +192,17 @@ struct AddBoundaryLoads {
     }
     HILDA_HD void add_power(ExternalSums& sum, std::uint32_t n) const
     {
-        const std::uint32_t b = pairs.j[n] & ~PairView::boundary_bit;
+        const std::uint32_t k = pairs.j[n] & ~PairView::boundary_bit, b = surfaces.boundary_of(k),
+                            i = pairs.i[n];
         const BoundaryVelocity u = before[b], next = after[b];
         const Load& load = pairs.load_of(n);
         const Vec3 F = to_double(load.F);
         Vec3 T{0, 0, 0};
         if (pairs.torque != nullptr) T = to_double(pairs.torque_of(n));
         if (u.omega.dot(u.omega) + next.omega.dot(next.omega) > 0)
-            T += contact_lever(boundary[b], global_position(particles.grid, particles.position[pairs.i[n]]),
-                               load.M.w)
+            T += surfaces
+                     .contact_lever(k, global_position(particles.grid, particles.position[i]),
+                                    particles.velocity[i].w, load.M.w)
                      .cross(F);
         sum.before += F.dot(u.v) + T.dot(u.omega), sum.after += F.dot(next.v) + T.dot(next.omega);
     }

@@ -93,6 +93,23 @@ std::pair<double, double> extent(const Boundary& b, const Vec3& low, const Vec3&
     return {least, most};
 }
 
+/// The triangles of the mesh of boundary number `of`
+Polygons mesh_drawing(const Boundary& b, const Meshes& meshes, std::uint32_t of)
+{
+    Polygons all;
+    for (const Meshes::Part& part : meshes.part) {
+        if (part.boundary != of) continue;
+        for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v)
+            all.point.push_back(b.r + rotated(b.p, meshes.vertex[v]));
+        for (std::uint32_t t = part.first; t < part.end; ++t) {
+            all.polygon.emplace_back();
+            for (const std::uint32_t v : meshes.triangle[t].vertex)
+                all.polygon.back().push_back(static_cast<int>(v - part.first_vertex));
+        }
+    }
+    return all;
+}
+
 }  // namespace
 
 Polygons drawing(const Boundary& b, const Vec3& low, const Vec3& high)
@@ -123,7 +140,9 @@ std::string boundaries_vtp(const World& world)
     int count = 0;
     for (std::size_t k = 0; k < world.all_boundaries().size(); ++k) {
         const Boundary& b = world.all_boundaries()[k];
-        const Polygons drawn = drawing(b, world.low(), world.high());
+        const Polygons drawn = b.shape == Boundary::Shape::mesh
+                                   ? mesh_drawing(b, world.all_meshes(), static_cast<std::uint32_t>(k))
+                                   : drawing(b, world.low(), world.high());
         for (const Vec3& p : drawn.point) {
             const Vec3 v = b.v + b.omega.cross(p - b.r);
             points.insert(points.end(), {p.x, p.y, p.z});

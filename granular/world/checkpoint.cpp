@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 11};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 12};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>
@@ -98,11 +98,12 @@ std::string shown(const RemovedParticle& p)
            ", side " + std::to_string(p.side);
 }
 
-/// The numbers of a place are finite, and its axis has the length 1.
+/// The numbers of a place are finite, and its axis and Euler parameters have the length 1.
 template <class Place>
 bool valid_place(const Place& b)
 {
-    return finite(b.r) && std::abs(b.axis.norm() - 1) < 1e-6;
+    return finite(b.r) && std::abs(b.axis.norm() - 1) < 1e-6 &&
+           std::abs(b.p.e0 * b.p.e0 + b.p.e.dot(b.p.e) - 1) < 1e-6;
 }
 
 bool valid_compensation(const Compensation& c)
@@ -129,9 +130,20 @@ bool same_boundary(const Boundary& now, Boundary saved)
 {
     for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F})
         if (!finite(v)) return false;
-    saved.r = now.r, saved.axis = now.axis, saved.v = now.v, saved.omega = now.omega, saved.F = now.F;
+    saved.r = now.r, saved.axis = now.axis, saved.p = now.p, saved.v = now.v, saved.omega = now.omega,
+    saved.F = now.F;
     // There is no padding, and -0 or NaN in place of a number is another boundary.
     return std::memcmp(&now, &saved, sizeof saved) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+}
+
+std::uint64_t checksum(const Meshes& meshes)
+{
+    std::uint64_t sum = 0;
+    const auto add = [&](const auto& list) {
+        sum = io::checksum(sum, reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
+    };
+    add(meshes.vertex), add(meshes.triangle);
+    return sum;
 }
 
 /// The members of a boundary that are invalid or differ from those of the case
@@ -145,6 +157,8 @@ std::string changes(const Boundary& now, const Boundary& saved)
          {std::pair{"r", saved.r}, {"v", saved.v}, {"omega", saved.omega}, {"F", saved.F}})
         if (!finite(v)) add(name, shown(v));
     if (!(std::abs(saved.axis.norm() - 1) < 1e-6)) add("axis", shown(saved.axis));
+    const double p2 = saved.p.e0 * saved.p.e0 + saved.p.e.dot(saved.p.e);
+    if (!(std::abs(p2 - 1) < 1e-6)) add("square of the Euler parameters", shown(p2));
     for (const auto& [name, before, after] :
          {std::tuple{"radius", now.radius, saved.radius},
           {"mass", now.mass, saved.mass},
@@ -197,8 +211,12 @@ void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs)
     write_contacts(a, pairs, pairs.internal.size() > 0 ? n : 0, pairs.internal);
 }
 
-void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries)
+void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries,
+                std::size_t triangles)
 {
+    const auto valid_surface = [&](std::uint32_t k) {
+        return Surfaces::is_triangle(k) ? k - Surfaces::first_triangle < triangles : k < boundaries;
+    };
     const std::size_t n = a.list(pairs.i);
     const auto list = [&](auto& values, bool optional) {
         const std::size_t got = a.list(values);
@@ -213,7 +231,7 @@ void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, s
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t j = pairs.j.data()[k];
         const bool valid_j =
-            (j & PairView::boundary_bit) != 0 ? (j & ~PairView::boundary_bit) < boundaries : j < particles;
+            (j & PairView::boundary_bit) != 0 ? valid_surface(j & ~PairView::boundary_bit) : j < particles;
         if (!(pairs.i.data()[k] < particles && valid_j))
             a.check(false, "unknown particle of a pair, got " + std::to_string(pairs.i.data()[k]) + " and " +
                                std::to_string(j));
@@ -263,6 +281,10 @@ void World::transfer(io::Archive& a)
     a.list(removed_particles);
     a.check_each(removed_particles, "invalid record of a removed particle", valid_removed,
                  [](const RemovedParticle& p) { return shown(p); });
+    std::uint64_t of_meshes = checksum(meshes);
+    a.value(of_meshes);
+    a.check(of_meshes == checksum(meshes),
+            "other meshes than in this world, got the checksum " + std::to_string(of_meshes));
     std::vector<Boundary> now = boundaries;
     a.list(boundaries);
     a.check(now.size() == boundaries.size(),
@@ -281,7 +303,7 @@ void World::transfer(io::Archive& a)
     if (a.reads()) {
         moved_to.clear();
         if (!moved.empty())
-            for (const Boundary& b : boundaries) moved_to.push_back({b.r, b.axis});
+            for (const Boundary& b : boundaries) moved_to.emplace_back(b);
     }
     transfer_particles(a);
     Particles<par::Cpu>& p = engine->arrays().particle;
@@ -317,7 +339,7 @@ void World::transfer(io::Archive& a)
             a.check(false, "invalid position of " + name_of(p.id.data()[k]) + ", got " +
                                shown(Vec3{double(place.x), double(place.y), double(place.z)}));
     }
-    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size());
+    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size(), meshes.triangle.size());
     if (has_list)
         restore_neighbours(a.name(), std::move(at_build));
     else
@@ -429,7 +451,8 @@ void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild
 {
     const std::vector<Boundary> now = boundaries;
     for (std::size_t k = 0; k < boundaries.size(); ++k)
-        boundaries[k].r = boundaries_at_build[k].r, boundaries[k].axis = boundaries_at_build[k].axis;
+        boundaries[k].r = boundaries_at_build[k].r, boundaries[k].axis = boundaries_at_build[k].axis,
+        boundaries[k].p = boundaries_at_build[k].p;
     const auto exchange = [&] {
         Position* const position = engine->arrays().particle.position.data();
         for (std::size_t k = 0; k < at_build.size(); ++k) {

@@ -84,11 +84,28 @@ int World::add(const Boundary& b)
     if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
         refuse("boundary", "mass and inertia must not be negative",
                b.mass >= 0 && std::isfinite(b.mass) ? b.inertia : b.mass);
+    if (boundaries.size() >= Surfaces::first_triangle)
+        refuse("boundaries", "there are too many", boundaries.size() + 1);
     boundaries.push_back(b);
     start_balance();
     laws_changed = true;
     invalidate_neighbours();
     return static_cast<int>(boundaries.size()) - 1;
+}
+
+int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
+{
+    const std::string name = "boundary " + std::to_string(boundaries.size());
+    check_mesh(mesh, name);
+    if (b.shape != Boundary::Shape::mesh)
+        refuse(name, "the shape of a boundary with triangles must be a mesh", static_cast<int>(b.shape));
+    if (meshes.triangle.size() + mesh.triangle.size() > TriangleMesh::most_triangles)
+        refuse(name, "all meshes must not have more than 2^22 triangles",
+               meshes.triangle.size() + mesh.triangle.size());
+    const int number = add(b);
+    meshes.add(mesh, static_cast<std::uint32_t>(number), two_sided);
+    engine->set_meshes(meshes);
+    return number;
 }
 
 void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
@@ -196,7 +213,7 @@ void World::find_neighbours() const
     }
     particle_displacement = boundary_displacement = 0;
     boundaries_at_build.clear();
-    for (const Boundary& b : boundaries) boundaries_at_build.push_back({b.r, b.axis});
+    for (const Boundary& b : boundaries) boundaries_at_build.emplace_back(b);
     ++rebuild_count;
 }
 
@@ -258,11 +275,16 @@ double World::move_boundaries()
         b.r += h * b.v;
         double displacement = h * b.v.norm();
         const double angle = h * b.omega.norm();
-        if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
+        if (b.shape == Boundary::Shape::mesh) {
+            if (angle > 0) b.p = turned(b.p, h * b.omega);
+            for (const Meshes::Part& part : meshes.part)
+                if (part.boundary == k)  // also of the centres of particles in contact
+                    displacement += angle * (part.radius + double{domain.largest} + domain.skin);
+        } else if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * b.omega;
-            const Vec3 turned = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
-                                ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
-            b.axis = (1 / turned.norm()) * turned;
+            const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
+                                   ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
+            b.axis = (1 / direction.norm()) * direction;
             // distance from r to the farthest corner of the domain
             const Vec3 a = options.low - b.r, c = options.high - b.r;
             displacement +=
@@ -271,7 +293,7 @@ double World::move_boundaries()
                             .norm();
         }
         largest = std::max(largest, displacement);
-        moved_to[k] = {b.r, b.axis};
+        moved_to[k] = BoundaryPlace(b);
     }
     return largest;
 }

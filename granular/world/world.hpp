@@ -138,6 +138,10 @@ public:
     void set_law(int material_i, int material_j, const PairLaw& law);
     /// Adds a boundary and returns its number. Throws io::InvalidInput.
     int add(const Boundary& boundary);
+    /// Adds a boundary with Shape::mesh. Its vertices are relative to Boundary::r in the frame of the mesh,
+    /// whose orientation is Boundary::p. The particles are in front of the triangles: the normals point to
+    /// them. With `two_sided` they may be on both sides. Throws io::InvalidInput.
+    int add(const Boundary& boundary, const TriangleMesh& mesh, bool two_sided = false);
     /// Adds a particle and returns its id. Throws io::InvalidInput.
     ///
     /// Ids count from 0 in the order of the calls. The id of a removed particle is not used again.
@@ -210,6 +214,7 @@ public:
     /// contact forces. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     const std::vector<Boundary>& all_boundaries() const { return boundaries; }
+    const Meshes& all_meshes() const { return meshes; }
     /// Lower and upper corner of the domain [m]
     const Vec3& low() const { return options.low; }
     const Vec3& high() const { return options.high; }
@@ -351,6 +356,7 @@ private:
     bool laws_have_energy() const;
     bool boundaries_move();
     void send_boundaries() const;
+    Surfaces surfaces() const { return {boundaries.data(), meshes.view()}; }
     bool is_sample() const;
     void watch_loads();
     void watch_advance();
@@ -366,6 +372,7 @@ private:
     std::vector<PairLaw> laws;
     std::vector<std::uint8_t> law_of;  ///< index into laws, or no_law: materials × materials
     std::vector<Boundary> boundaries;
+    Meshes meshes;                  ///< of the boundaries with Shape::mesh
     std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;  ///< particles added since the last insertion
     std::vector<std::function<void(World&)>> callbacks;
@@ -387,6 +394,12 @@ private:
     mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
     struct BoundaryPlace {
         Vec3 r, axis;
+        EulerParameters<double> p;
+        explicit BoundaryPlace(const Boundary& b = {}) : r(b.r), axis(b.axis), p(b.p) {}
+        bool operator==(const BoundaryPlace& o) const
+        {
+            return r == o.r && axis == o.axis && p.e0 == o.p.e0 && p.e == o.p.e;
+        }
     };
     mutable std::vector<BoundaryPlace> boundaries_at_build;  ///< places when the neighbour list was built
     mutable long rebuild_count = 0;

@@ -9,21 +9,6 @@ namespace hilda::granular {
 
 using namespace detail;
 
-namespace {
-
-/// exp(angle/2) ⊗ p, normalised: the rotation p followed by the rotation vector `angle` in the global frame
-EulerParameters<double> turned(const EulerParameters<double>& p, const Vec3& angle)
-{
-    const double half = 0.5 * angle.norm();
-    const double cosine = std::cos(half);
-    const Vec3 s = (half > 0 ? std::sin(half) / (2 * half) : 0.5) * angle;
-    const EulerParameters<double> q{cosine * p.e0 - s.dot(p.e), cosine * p.e + p.e0 * s + s.cross(p.e)};
-    const double length = std::sqrt(q.e0 * q.e0 + q.e.dot(q.e));
-    return {q.e0 / length, (1 / length) * q.e};
-}
-
-}  // namespace
-
 /// Attaches an inserted particle to its boundary, at their present places.
 void World::attach(const Particle& p)
 {

@@ -51,7 +51,7 @@ void World::for_current_loads(const F& f) const
     // previous step.
     const float h =
         options.scheme == Scheme::velocity_verlet && step_count > 0 ? 0 : static_cast<float>(options.h);
-    const LawView law_view{laws.data(), static_cast<int>(laws.size()), boundaries.data(), h};
+    const LawView law_view{laws.data(), static_cast<int>(laws.size()), surfaces(), h};
     const ParticleView particles = particle_view(domain, of.particle);
     constexpr std::uint32_t most = CurrentLoads::most;
     par::for_each(
@@ -104,14 +104,15 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
     ContactRecord c;
     c.boundary = (j & PairView::boundary_bit) != 0;
     c.i = particle.id.data()[i];
-    c.j = c.boundary ? j & ~PairView::boundary_bit : particle.id.data()[j];
+    const std::uint32_t surface = j & ~PairView::boundary_bit;
+    c.j = c.boundary ? surfaces().boundary_of(surface) : particle.id.data()[j];
     c.replica = particle.species.data()[i].replica;
     const Position at = particle.position.data()[i];
     const double R = particle.velocity.data()[i].w;
     const Vec3 r = global_position(domain.grid, at);
     const double depth = now.load[n - now.begin].M.w;  // 0 with Lever::radius
     if (c.boundary) {
-        const Nearest near = nearest(boundaries[c.j], r);
+        const Nearest near = surfaces().nearest(surface, r, R);
         c.n = near.n, c.delta = R - near.distance;
         c.C = r - (near.distance + depth) * near.n;
     } else {

@@ -88,7 +88,8 @@ void World::check_histories() const
         const bool boundary = (j & PairView::boundary_bit) != 0;
         refuse_state(
             name_of(id[pairs.i.data()[n]]) + " and " +
-                (boundary ? "boundary " + std::to_string(j & ~PairView::boundary_bit) : name_of(id[j])) +
+                (boundary ? "boundary " + std::to_string(surfaces().boundary_of(j & ~PairView::boundary_bit))
+                          : name_of(id[j])) +
                 ": the history of the contact",
             time, shown(x));
     };

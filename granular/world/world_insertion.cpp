@@ -337,9 +337,11 @@ void World::check_overlaps(std::uint32_t first) const
         const double R_i = p.velocity.data()[i].w;
         Fault f{.boundary = (j & PairView::boundary_bit) != 0, .i = p.id.data()[i]};
         if (f.boundary) {
-            f.j = j & ~PairView::boundary_bit, f.R = R_i;
+            const std::uint32_t surface = j & ~PairView::boundary_bit;
+            f.j = surfaces().boundary_of(surface), f.R = R_i;
             f.delta =
-                R_i - nearest(boundaries[f.j], global_position(domain.grid, p.position.data()[i])).distance;
+                R_i -
+                surfaces().nearest(surface, global_position(domain.grid, p.position.data()[i]), R_i).distance;
         } else {
             const double R_j = p.velocity.data()[j].w;
             f.j = p.id.data()[j], f.R = std::min(R_i, R_j);

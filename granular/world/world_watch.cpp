@@ -48,15 +48,14 @@ bool World::boundaries_move()
     bool moves = false, free = false, placed = false;
     if (moved.size() != boundaries.size()) {
         moved.clear(), moved_to.clear();
-        for (const Boundary& b : boundaries)
-            moved.push_back({b.v, b.omega}), moved_to.push_back({b.r, b.axis});
+        for (const Boundary& b : boundaries) moved.push_back({b.v, b.omega}), moved_to.emplace_back(b);
     }
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         const Boundary& b = boundaries[k];
         const Vec3 zero{0, 0, 0};
         moves = moves || b.v != zero || b.omega != zero || moved[k].v != zero || moved[k].omega != zero;
         free = free || b.mass > 0;
-        placed = placed || b.r != moved_to[k].r || b.axis != moved_to[k].axis;
+        placed = placed || !(BoundaryPlace(b) == moved_to[k]);
     }
     if (moves || free || placed) record.is_driven = 1;
     if (!moves) return false;

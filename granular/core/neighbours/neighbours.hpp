@@ -101,8 +101,8 @@ struct SearchInput {
     /// Law of each pair of materials, materials × materials; nullptr if there is a single law
     const std::uint8_t* law_of = nullptr;
     std::uint32_t materials = 1;
-    const Boundary* boundary = nullptr;
-    BoundaryBlockView near;      ///< of these boundaries
+    Surfaces surfaces;
+    BoundaryBlockView near;      ///< of these surfaces
     bool rotation_laws = false;  ///< whether a law of rolling or spin is in use
     bool internal = false;       ///< whether a law has internal variables
 };

@@ -120,7 +120,7 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         .skin = domain.skin,
         .small = domain.small,
         .largest = domain.largest,
-        .boundary = input.boundary,
+        .surfaces = input.surfaces,
         .near = input.near,
         .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()}};
     counts.resize(n);

@@ -13,7 +13,7 @@
 namespace hilda::granular::detail {
 
 /// Calls f(j) in a fixed order for the partners of particle k whose surfaces are closer than the skin:
-/// particles, then boundaries with PairView::boundary_bit. Two fixed bodies are no pair.
+/// particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no pair.
 ///
 /// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
 /// finds all small ones and the large ones with higher indices in the cells within its reach.
@@ -26,7 +26,7 @@ struct Search {
     CellStarts cell_start;
     float unit, skin;
     float small, largest;  ///< see Domain
-    const Boundary* boundary;
+    Surfaces surfaces;
     BoundaryBlockView near;
     SearchedRows<Backend> rows;
 
@@ -112,9 +112,9 @@ struct Search {
         const Position at = position[k];
         const std::uint32_t block = near.block(grid.x_of(at.cell), grid.y_of(at.cell), grid.z_of(at.cell));
         for (std::uint32_t n = near.start[block]; n < near.start[block + 1]; ++n) {
-            const std::uint32_t b = near.boundary[n];
-            if (nearest(boundary[b], global_position(grid, at)).distance < velocity[k].w + skin)
-                f(PairView::boundary_bit | b);
+            const std::uint32_t surface = near.surface[n];
+            if (surfaces.is_near(surface, global_position(grid, at), velocity[k].w, skin))
+                f(PairView::boundary_bit | surface);
         }
     }
 
@@ -203,6 +203,10 @@ struct FillPairs {
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
+        const auto boundary = [&](std::uint32_t other) -> const Boundary& {
+            const Surfaces& s = search.surfaces;
+            return s.boundary[s.boundary_of(other & ~PairView::boundary_bit)];
+        };
         std::uint32_t n = start[k];
         const auto put = [&](std::uint32_t other) {
             i[n] = k, j[n] = other;
@@ -210,8 +214,7 @@ struct FillPairs {
             if (particle && counts_as_j != nullptr) fetch_add(&counts_as_j[other], 1);
             if (law_of != nullptr)
                 law[n] = law_of[search.species[k].material * materials +
-                                (particle ? search.species[other].material
-                                          : search.boundary[other & ~PairView::boundary_bit].material)];
+                                (particle ? search.species[other].material : boundary(other).material)];
             ++n;
         };
         const std::uint32_t count = start[k + 1] - n;

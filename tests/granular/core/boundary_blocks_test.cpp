@@ -2,6 +2,8 @@
 // The boundaries near blocks of cells, against all boundaries.
 #include "granular/core/boundary_blocks.hpp"
 #include "granular/case/split_mix.hpp"
+#include "granular/core/surfaces/surfaces.hpp"
+#include "granular/mesh/mesh_shapes.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>
@@ -39,7 +41,7 @@ CellGrid grid(std::int32_t cells)
 
 bool lists(const BoundaryBlockView& view, std::uint32_t block, std::uint32_t boundary)
 {
-    return std::binary_search(view.boundary + view.start[block], view.boundary + view.start[block + 1],
+    return std::binary_search(view.surface + view.start[block], view.surface + view.start[block + 1],
                               boundary);
 }
 
@@ -56,8 +58,8 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
          {Boundary::Shape::plane, Boundary::Shape::cylinder, Boundary::Shape::cone, Boundary::Shape::sphere})
         for (int k = 0; k < 20; ++k) all.push_back(random_boundary(random, shape));
     BoundaryBlocks blocks;
-    REQUIRE(blocks.update(g, reach, all));
-    REQUIRE_FALSE(blocks.update(g, reach, all));
+    REQUIRE(blocks.update(g, reach, all, {}));
+    REQUIRE_FALSE(blocks.update(g, reach, all, {}));
     const BoundaryBlockView view = blocks.view();
     long missing = 0, listed = 0, far = 0;
     for (int n = 0; n < 4000; ++n) {
@@ -80,12 +82,55 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
     CHECK(far == 0);
 }
 
+TEST_CASE("the blocks of cells list all triangles within reach and few others", "[granular][mesh]")
+{
+    const std::int32_t cells = GENERATE(4, 30);
+    const CellGrid g = grid(cells);
+    const double width = 1. / cells, reach = 0.6 * width;
+    granular::Random random(5);
+    Boundary b;
+    b.shape = Boundary::Shape::mesh, b.r = {0.5, 0.4, 0.3};
+    const Vec3 a = random.direction();
+    b.p = {std::cos(0.4), std::sin(0.4) * a};
+    granular::Meshes meshes;
+    meshes.add(granular::sphere_mesh(0.4, 2), 0, false);
+    meshes.add(granular::plate_mesh(1, 2, 0.25), 1, false);
+    Boundary plate = b;
+    plate.r = {0.2, 0.5, 0.5};
+    const std::vector<Boundary> all = {b, plate};
+    BoundaryBlocks blocks;
+    REQUIRE(blocks.update(g, reach, all, meshes));
+    const BoundaryBlockView view = blocks.view();
+    const granular::Surfaces surfaces{all.data(), meshes.view()};
+    const auto triangles = static_cast<std::uint32_t>(meshes.triangle.size());
+    long missing = 0, listed = 0, far = 0, near = 0;
+    for (int n = 0; n < 3000; ++n) {
+        std::int32_t at[3];
+        for (int k = 0; k < 3; ++k)
+            at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
+        const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
+        const Vec3 point{inside(0), inside(1), inside(2)};
+        const std::uint32_t block = view.block(at[0], at[1], at[2]);
+        for (std::uint32_t t = 0; t < triangles; ++t) {
+            const std::uint32_t surface = granular::Surfaces::first_triangle + t;
+            const double distance = (point - surfaces.closest_point(surface, point)).norm();
+            const bool is_listed = lists(view, block, surface);
+            listed += is_listed, near += distance < reach;
+            missing += distance < reach && !is_listed;
+            far += is_listed && distance > 3 * (reach + 1.1 * width);
+        }
+    }
+    CHECK(missing == 0);
+    CHECK(near > 100);
+    CHECK(50 * far < listed);
+}
+
 TEST_CASE("the blocks of cells follow boundaries that move, are added, and another grid",
           "[granular][neighbours]")
 {
     granular::Random random(9);
     const auto same = [](const BoundaryBlocks& a, const BoundaryBlocks& b) {
-        return a.start == b.start && a.boundary == b.boundary;
+        return a.start == b.start && a.surface == b.surface;
     };
     std::vector<Boundary> all(3);
     BoundaryBlocks kept;
@@ -94,9 +139,9 @@ TEST_CASE("the blocks of cells follow boundaries that move, are added, and anoth
         if (round % 4 == 3) all.push_back(random_boundary(random, Boundary::Shape::plane));
         if (round == 10) all.pop_back();
         const CellGrid g = grid(round < 8 ? 6 : 11);
-        CHECK(kept.update(g, 0.1, all));
+        CHECK(kept.update(g, 0.1, all, {}));
         BoundaryBlocks fresh;
-        fresh.update(g, 0.1, all);
+        fresh.update(g, 0.1, all, {});
         CHECK(same(kept, fresh));
     }
 }

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The local minima of the distance from a point to a triangle mesh, triangle by triangle.
+///
+/// Every local minimum of the distance belongs to one feature of the mesh: the inside of a triangle, an edge
+/// or a vertex. A triangle owns its inside; an edge or a vertex is owned by the triangle with the lowest
+/// number among those that share it. A triangle therefore decides by itself whether it has a contact, and
+/// there is one contact for each local minimum. A point p is outside of a triangle across an edge if it is in
+/// front of the plane through the edge that is perpendicular to the triangle and faces away from it.
+///
+/// - triangle: p is not outside across any of its edges,
+/// - edge ab:  p is outside of both triangles, (p - a) · (b - a) > 0 and (p - b) · (a - b) > 0,
+/// - vertex v: (p - v) · e ≤ 0 for all edges e that leave v.
+///
+/// The triangles of an edge or vertex evaluate the same expressions, and the planes of an edge between
+/// coplanar triangles have opposite coefficients, so that rounding errors do not lead to different decisions.
+
+#pragma once
+
+#include "granular/core/boundary.hpp"
+
+namespace hilda::granular {
+
+constexpr std::uint32_t no_triangle = ~std::uint32_t{0};
+
+/// n · p = offset
+struct MeshPlane {
+    Vec3 n;                                                                    ///< unit normal
+    double offset;                                                             ///< [m]
+    HILDA_HD double height(const Vec3& p) const { return n.dot(p) - offset; }  ///< signed distance [m]
+};
+
+/// A triangle of a mesh, in its frame. Edge k leads from vertex k to vertex k + 1, modulo 3.
+struct MeshTriangle {
+    enum : std::uint32_t { two_sided = 1, owns_edge = 2, owns_vertex = 16 };
+
+    std::uint32_t vertex[3];
+    std::uint32_t across[3];  ///< the triangle on the other side of each edge, or no_triangle
+    std::uint32_t boundary;   ///< number of the boundary to which the mesh belongs
+    std::uint32_t flags;      ///< two_sided, owns_edge << k, owns_vertex << k
+    MeshPlane face;
+    MeshPlane edge[3];  ///< perpendicular to the triangle; the normals point away from it
+};
+
+/// The triangles of all meshes. The edges that leave vertex v lead to the vertices
+/// fan[fan_start[v]] … fan[fan_start[v + 1] - 1].
+struct MeshView {
+    const MeshTriangle* triangle = nullptr;
+    const Vec3* vertex = nullptr;         ///< [m], in the frame of the mesh
+    const Vec3* vertex_normal = nullptr;  ///< sum of the normals at a vertex, weighted by their angles
+    const std::uint32_t *fan_start = nullptr, *fan = nullptr;
+};
+
+namespace detail {
+
+/// The number of the edge of a triangle that leaves vertex v
+HILDA_HD inline int edge_from(const MeshTriangle& T, std::uint32_t v)
+{
+    return T.vertex[0] == v ? 0 : T.vertex[1] == v ? 1 : 2;
+}
+
+/// The minimum at the closest point q on a feature whose normals have the sum `normal`
+HILDA_HD inline Nearest minimum_at(const Vec3& p, const Vec3& q, const Vec3& normal, bool two_sided)
+{
+    const Vec3 d = p - q;
+    const double distance = d.norm();
+    if (d.dot(normal) < 0 && !two_sided) return {no_contact_distance, normal};
+    if (!(distance > 0)) return {0, (1 / normal.norm()) * normal};
+    return {distance, (1 / distance) * d};
+}
+
+}  // namespace detail
+
+/// The local minimum of the distance that the triangle t owns, for a point in the frame of the mesh: its
+/// distance and the unit vector from the closest point to p. The distance is no_contact_distance if t owns
+/// none, if the distance is `reach` or more, or if p is behind a mesh that is not two-sided.
+HILDA_HD inline Nearest nearest(const MeshView& mesh, std::uint32_t t, const Vec3& p, double reach)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const Nearest none = {no_contact_distance, T.face.n};
+    const double height = T.face.height(p);
+    if (!(height < reach && height > -reach)) return none;
+    const bool two_sided = (T.flags & MeshTriangle::two_sided) != 0;
+    const double outside[3] = {T.edge[0].height(p), T.edge[1].height(p), T.edge[2].height(p)};
+    if (outside[0] < 0 && outside[1] < 0 && outside[2] < 0) {
+        if (height >= 0) return {height, T.face.n};
+        return two_sided ? Nearest{-height, -T.face.n} : none;
+    }
+    if (outside[0] >= reach || outside[1] >= reach || outside[2] >= reach) return none;
+    for (int k = 0; k < 3; ++k) {
+        if (outside[k] < 0 || (T.flags & MeshTriangle::owns_edge << k) == 0) continue;
+        const std::uint32_t u = T.vertex[k], v = T.vertex[k == 2 ? 0 : k + 1];
+        const Vec3 a = mesh.vertex[u], b = mesh.vertex[v], e = b - a;
+        const double along = (p - a).dot(e);
+        if (!(along > 0 && (p - b).dot(a - b) > 0)) continue;
+        Vec3 normal = T.face.n;
+        if (T.across[k] != no_triangle) {
+            const MeshTriangle& other = mesh.triangle[T.across[k]];
+            if (other.edge[detail::edge_from(other, v)].height(p) < 0) continue;
+            normal += other.face.n;
+        }
+        return detail::minimum_at(p, a + (along / e.dot(e)) * e, normal, two_sided);
+    }
+    for (int k = 0; k < 3; ++k) {
+        if ((T.flags & MeshTriangle::owns_vertex << k) == 0) continue;
+        const std::uint32_t v = T.vertex[k];
+        const Vec3 at = mesh.vertex[v], d = p - at;
+        bool is_closest = true;
+        for (std::uint32_t m = mesh.fan_start[v]; is_closest && m < mesh.fan_start[v + 1]; ++m)
+            is_closest = d.dot(mesh.vertex[mesh.fan[m]] - at) <= 0;
+        if (is_closest) return detail::minimum_at(p, at, mesh.vertex_normal[v], two_sided);
+    }
+    return none;
+}
+
+/// Whether the triangle t may own a local minimum for a point that is closer than `slack` [m] to p: the
+/// conditions of nearest(), each relaxed by the slack
+HILDA_HD inline bool may_own(const MeshView& mesh, std::uint32_t t, const Vec3& p, double slack)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const double outside[3] = {T.edge[0].height(p), T.edge[1].height(p), T.edge[2].height(p)};
+    if (outside[0] < slack && outside[1] < slack && outside[2] < slack)
+        if ((T.flags & MeshTriangle::two_sided) != 0 || T.face.height(p) > -slack) return true;
+    for (int k = 0; k < 3; ++k) {
+        if (outside[k] < -slack || (T.flags & MeshTriangle::owns_edge << k) == 0) continue;
+        const std::uint32_t u = T.vertex[k], v = T.vertex[k == 2 ? 0 : k + 1];
+        const Vec3 a = mesh.vertex[u], b = mesh.vertex[v], e = b - a;
+        const double margin = slack * e.norm();
+        if (!((p - a).dot(e) > -margin && (p - b).dot(a - b) > -margin)) continue;
+        if (T.across[k] == no_triangle) return true;
+        const MeshTriangle& other = mesh.triangle[T.across[k]];
+        if (other.edge[detail::edge_from(other, v)].height(p) >= -slack) return true;
+    }
+    for (int k = 0; k < 3; ++k) {
+        if ((T.flags & MeshTriangle::owns_vertex << k) == 0) continue;
+        const std::uint32_t v = T.vertex[k];
+        const Vec3 at = mesh.vertex[v], d = p - at;
+        bool may_be_closest = true;
+        for (std::uint32_t m = mesh.fan_start[v]; may_be_closest && m < mesh.fan_start[v + 1]; ++m) {
+            const Vec3 e = mesh.vertex[mesh.fan[m]] - at;
+            may_be_closest = d.dot(e) <= slack * e.norm();
+        }
+        if (may_be_closest) return true;
+    }
+    return false;
+}
+
+/// The point of the triangle t that is closest to p, in the frame of the mesh.     Ericson (2005), Sec. 5.1.5
+HILDA_HD inline Vec3 closest_point(const MeshView& mesh, std::uint32_t t, const Vec3& p)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const Vec3 a = mesh.vertex[T.vertex[0]], b = mesh.vertex[T.vertex[1]], c = mesh.vertex[T.vertex[2]];
+    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
+                 d6 = ac.dot(cp);
+    if (d1 <= 0 && d2 <= 0) return a;
+    if (d3 >= 0 && d4 <= d3) return b;
+    if (d6 >= 0 && d5 <= d6) return c;
+    const double to_c = d1 * d4 - d3 * d2, to_b = d5 * d2 - d1 * d6, to_a = d3 * d6 - d5 * d4;
+    if (to_c <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 / (d1 - d3)) * ab;
+    if (to_b <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 / (d2 - d6)) * ac;
+    if (to_a <= 0 && d4 >= d3 && d5 >= d6) return b + ((d4 - d3) / (d4 - d3 + d5 - d6)) * (c - b);
+    return a + (1 / (to_a + to_b + to_c)) * (to_b * ab + to_c * ac);
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/core/surfaces/meshes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace hilda::granular {
+
+void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_sided)
+{
+    const auto first_vertex = static_cast<std::uint32_t>(vertex.size()),
+               first = static_cast<std::uint32_t>(triangle.size()),
+               vertices = static_cast<std::uint32_t>(mesh.vertex.size()),
+               triangles = static_cast<std::uint32_t>(mesh.triangle.size());
+    double radius = 0;
+    for (const Vec3& v : mesh.vertex) radius = std::max(radius, v.norm());
+    part.push_back({boundary, first, first + triangles, first_vertex, first_vertex + vertices, radius});
+    vertex.insert(vertex.end(), mesh.vertex.begin(), mesh.vertex.end());
+    vertex_normal.resize(vertex.size(), Vec3{0, 0, 0});
+
+    struct Edge {
+        std::uint32_t low, high, triangle, number;
+    };
+    std::vector<Edge> edges;
+    edges.reserve(3 * std::size_t{triangles});
+    std::vector<std::uint32_t> owner(vertices, no_triangle);  // of each vertex
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        MeshTriangle T{};
+        T.boundary = boundary;
+        if (two_sided) T.flags = MeshTriangle::two_sided;
+        Vec3 corner[3];
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t u = mesh.triangle[t][k], v = mesh.triangle[t][(k + 1) % 3];
+            corner[k] = mesh.vertex[u];
+            T.vertex[k] = first_vertex + u, T.across[k] = no_triangle;
+            edges.push_back({std::min(u, v), std::max(u, v), t, k});
+            if (owner[u] == no_triangle) owner[u] = t, T.flags |= MeshTriangle::owns_vertex << k;
+        }
+        const Vec3 normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+        const Vec3 n = (1 / normal.norm()) * normal;
+        T.face = {n, n.dot(corner[0])};
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const Vec3 a = corner[(k + 1) % 3] - corner[k], b = corner[(k + 2) % 3] - corner[k];
+            vertex_normal[T.vertex[k]] += std::atan2(a.cross(b).norm(), a.dot(b)) * n;
+            const Vec3 away = (1 / a.norm()) * a.cross(n);
+            T.edge[k] = {away, away.dot(corner[k])};
+        }
+        triangle.push_back(T);
+    }
+
+    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+    });
+    std::vector<std::uint32_t> count(vertices, 0);
+    const auto each_edge = [&](const auto& f) {
+        for (std::size_t k = 0; k < edges.size();) {
+            std::size_t end = k + 1;
+            while (end < edges.size() && edges[end].low == edges[k].low && edges[end].high == edges[k].high)
+                ++end;
+            f(k, end);
+            k = end;
+        }
+    };
+    each_edge([&](std::size_t k, std::size_t end) {
+        MeshTriangle& a = triangle[first + edges[k].triangle];
+        a.flags |= MeshTriangle::owns_edge << edges[k].number;
+        if (end - k == 2) {
+            MeshTriangle& b = triangle[first + edges[k + 1].triangle];
+            a.across[edges[k].number] = first + edges[k + 1].triangle;
+            b.across[edges[k + 1].number] = first + edges[k].triangle;
+            if (a.face.n.dot(b.face.n) > 0 && a.face.n.cross(b.face.n).norm() < 1e-12) {
+                const MeshPlane& plane = a.edge[edges[k].number];
+                b.edge[edges[k + 1].number] = {-plane.n, -plane.offset};
+            }
+        }
+        ++count[edges[k].low], ++count[edges[k].high];
+    });
+    std::vector<std::uint32_t> next(vertices);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        next[v] = fan_start.back();
+        fan_start.push_back(fan_start.back() + count[v]);
+    }
+    fan.resize(fan_start.back());
+    each_edge([&](std::size_t k, std::size_t) {
+        fan[next[edges[k].low]++] = first_vertex + edges[k].high;
+        fan[next[edges[k].high]++] = first_vertex + edges[k].low;
+    });
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Boundaries of triangles in a case file.
+#include "granular/case/case_file.hpp"
+#include "tests/support/grains.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace hilda;
+using namespace hilda::tests;
+
+namespace {
+
+const std::filesystem::path folder = std::filesystem::temp_directory_path() / "hilda_mesh_keys_test";
+
+/// Reads a case with a mesh of these members.
+granular::Case read(const std::string& members, const std::string& periodic = "[false, false, false]")
+{
+    const std::string text =
+        R"({"hilda_case": 1, "domain": {"low": [-1, -1, -1], "high": [1, 1, 1], "periodic": )" + periodic +
+        R"(}, "step": 1e-5, "end": 1e-3, "interval": 1e-4,
+        "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}], "laws": [{"between": ["glass", "glass"], "restitution": 0.8}],
+        "particles": [{"r": [0, 0, 0.9], "radius": 0.01}], "boundaries": [{"type": "mesh", )" +
+        members + "}]}";
+    granular::Environment environment;
+    environment.folder = folder.string();
+    return granular::read_case(text, "case.json", environment);
+}
+
+std::string error_of(const std::string& members)
+{
+    try {
+        read(members);
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+    return "";
+}
+
+std::size_t triangles(const std::string& members)
+{
+    return read(members).world->all_meshes().triangle.size();
+}
+
+}  // namespace
+
+TEST_CASE("a case file describes meshes by files and shapes", "[granular][mesh][case]")
+{
+    CHECK(triangles(R"("box": {"low": [0, 0, 0], "high": [1, 1, 1]})") == 12);
+    CHECK(triangles(R"("box": {"low": [0, 0, 0], "high": [1, 1, 1], "open": ["+z"], "edge": 0.5})") == 40);
+    CHECK(triangles(R"("lathe": {"profile": [[0.1, 0], [0.2, 0.3]], "segments": 10})") == 20);
+    CHECK(triangles(R"("extrude": {"outline": [[0, 0], [1, 0], [0, 1]], "length": 0.5})") == 8);
+    CHECK(triangles(R"("plate": {"width_x": 1, "width_y": 0.5, "edge": 0.5})") == 4);
+    CHECK(triangles(R"("sphere": {"radius": 0.1, "divisions": 1})") == 80);
+
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "one.obj") << "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n";
+    const granular::Case c =
+        read("\"file\": \"" + (folder / "one.obj").string() +
+             R"(", "scale": 0.001, "r": [0, 0, 0.5], "rotation": [0, 0, 1], "omega": [0, 0, 2])");
+    REQUIRE(c.world->all_meshes().vertex.size() == 3);
+    CHECK(c.world->all_meshes().vertex[1].x == Approx(1));
+    CHECK(c.world->all_boundaries()[0].p.e0 == Approx(std::cos(0.5)));
+    CHECK(c.world->all_boundaries()[0].r.z == 0.5);
+}
+
+TEST_CASE("wrong meshes of a case file are refused with their place", "[granular][mesh][case]")
+{
+    const auto contains = [](const std::string& members, const std::string& part) {
+        const std::string error = error_of(members);
+        INFO(members << "\n" << error);
+        CHECK(error.find(part) != std::string::npos);
+    };
+    contains(R"("name": "m")", "a mesh needs one of the keys file, box, lathe, extrude, plate, sphere");
+    contains(R"("plate": {"width_x": 1, "width_y": 1}, "sphere": {"radius": 1})",
+             "sphere must not be given together with plate");
+    contains(R"("plate": {"width_x": -1, "width_y": 1})", "/boundaries/0/plate/width_x");
+    contains(R"("plate": {"width_x": 1, "width_y": 1, "width_z": 1})", "width_z");
+    contains(R"("box": {"low": [0, 0, 0], "high": [1, 0, 1]})", "/boundaries/0/box");
+    contains(R"("lathe": {"profile": [[0.1, 0]]})", "profile must have at least 2 points, got 1");
+    contains(R"("lathe": {"profile": [[0.1, 0], [0.1]]})",
+             "/boundaries/0/lathe/profile/1 must be two numbers");
+    contains(R"("lathe": {"profile": [[0.1, 0], [-0.1, 1]]})", "/boundaries/0/lathe");
+    contains(R"("lathe": {"profile": [[0.1, 0], [0.1, 1]], "segments": 2})", "got 2");
+    contains(R"("sphere": {"radius": 1, "divisions": 40})", "got 40");
+    contains(R"("plate": {"width_x": 1, "width_y": 1, "edge": 1e-9})", "triangles");
+    contains("\"file\": \"" + (folder / "missing.stl").string() + '"', "missing.stl");
+    const std::vector<std::pair<std::string, std::string>> files = {
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 2\nf 1 2 3\nf 2 1 4\nf 1 2 5\n", "triangle 2"},
+        {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "triangle 0 must have an area"},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
+         "must have the orientation of its neighbours"},
+        {"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ":1: "},
+        {"", "a mesh must have a triangle"},
+    };
+    for (const auto& [text, part] : files) {
+        std::ofstream(folder / "wrong.obj") << text;
+        contains("\"file\": \"" + (folder / "wrong.obj").string() + '"', part);
+    }
+}
+
+TEST_CASE("a mesh that reaches a periodic side gives a warning", "[granular][mesh][case]")
+{
+    const std::string plate = R"("plate": {"width_x": 2, "width_y": 2})";
+    const auto notices = [&](const std::string& periodic) { return read(plate, periodic).notices; };
+    CHECK(notices("[false, false, false]").empty());
+    REQUIRE(notices("[false, true, false]").size() == 1);
+    CHECK(notices("[false, true, false]")[0].find("reaches a periodic side along y") != std::string::npos);
+}

@@ -120,6 +120,7 @@ public:
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
         o.finish();
+        check_mesh_sizes();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
                      fills, environment);
         double all = 0;
@@ -190,6 +191,31 @@ private:
         o.finish();
     }
 
+    /// Diagonal of the box around a mesh [m]
+    static double mesh_size(const TriangleMesh& mesh)
+    {
+        Vec3 low = mesh.vertex[0], high = low;
+        for (const Vec3& v : mesh.vertex) {
+            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+        }
+        return (high - low).norm();
+    }
+    /// Notes meshes that are much larger than the domain or smaller than the particles, as with other units.
+    void check_mesh_sizes()
+    {
+        const double domain = (out.world->high() - out.world->low()).norm();
+        double diameter = largest;
+        for (const FillSpec& f : fills) diameter = std::max(diameter, 2 * f.radius);
+        for (const auto& [place, size] : meshes)
+            if (size > 100 * domain || size < 0.1 * diameter)
+                out.notices.push_back(place + ": the mesh is " + io::shortest(size) + " m long, " +
+                                      (size > domain
+                                           ? "the domain " + io::shortest(domain)
+                                           : "the diameter of a particle " + io::shortest(diameter)) +
+                                      " m: its coordinates must be in m, or have the key scale");
+    }
+
     /// Notes a mesh that reaches a periodic side, across which it has no images.
     void check_images(const ObjectReader& o, const NamedBoundary& b)
     {
@@ -226,7 +252,7 @@ private:
             n.motion.boundary = o.located([&] {
                 return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
             });
-            if (n.mesh) check_images(o, n);
+            if (n.mesh) check_images(o, n), meshes.emplace_back(o.place(), mesh_size(*n.mesh));
             if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
             if (n.moves()) out.moving.push_back(n.motion.boundary);
             if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
@@ -335,7 +361,8 @@ private:
     std::vector<Material> materials;
     std::map<std::pair<int, int>, std::string> law_places;  ///< by the smaller and the larger material index
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
-    std::string free;    ///< pointer of the first boundary with a mass
+    std::vector<std::pair<std::string, double>> meshes;  ///< places and sizes [m]
+    std::string free;                                    ///< pointer of the first boundary with a mass
     double largest = 0;  ///< diameter of the particles that are given one by one [m]
     bool rotation_laws = false;
     std::vector<FillSpec> fills;

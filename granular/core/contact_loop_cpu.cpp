@@ -230,10 +230,21 @@ struct ContactLoop : detail::ContactPacks {
         store_loads(evaluate_pack(law, contact, n), n);
     }
 
+    /// Requests the triangle of a pair.
+    void prefetch(std::uint32_t n) const
+    {
+        const std::uint32_t k = pairs.j[n] & ~PairView::boundary_bit;
+        if (!Surfaces::is_triangle(k)) return;
+        const auto* const triangle =
+            reinterpret_cast<const char*>(laws.surfaces.mesh.triangle + (k - Surfaces::first_triangle));
+        for (std::size_t byte = 0; byte < sizeof(MeshTriangle); byte += 64)
+            __builtin_prefetch(triangle + byte);
+    }
+
     /// Contacts with surfaces of any shape: the geometry is computed per pair in double precision, the force
     /// law per pack.
-    void evaluate_surfaces(const PairLaw& law, const std::uint32_t* which, std::uint32_t number,
-                           Pack& overlaps) const
+    [[gnu::flatten]] void evaluate_surfaces(const PairLaw& law, const std::uint32_t* which,
+                                            std::uint32_t number, Pack& overlaps) const
     {
         // a pack of contacts in the memory layout of ContactPoint<Pack>
         constexpr int values = sizeof(ContactPoint<float>) / sizeof(float);
@@ -256,7 +267,9 @@ struct ContactLoop : detail::ContactPacks {
             store_loads(evaluate_pack(law, contact, touching), touching);
             touching_count = 0;
         };
+        constexpr std::uint32_t ahead = 6;  // pairs
         for (std::uint32_t m = 0; m < number; ++m) {
+            if (m + ahead < number) prefetch(which[m + ahead]);
             const std::uint32_t at = which[m], i = pairs.i[at];
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],

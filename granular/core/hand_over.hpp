@@ -38,9 +38,9 @@ struct HandOver {
     {
         const std::uint32_t begin = which[k], i = pairs.i[begin], end = start[i + 1];
         if (begin > start[i] && HasTriangle{pairs.j}(begin - 1)) return;
-        bool any = false;
-        for (std::uint32_t n = begin; n < end; ++n) any = any || pairs.in_contact[n] != 0;
-        if (!any) return;
+        std::uint32_t contacts = 0;
+        for (std::uint32_t n = begin; n < end; ++n) contacts += pairs.in_contact[n] != 0 ? 1 : 0;
+        if (contacts == 0 || contacts == end - begin) return;
         const Vec3 r = global_position(particles.grid, particles.position[i]);
         const double R = particles.velocity[i].w;
         for (std::uint32_t n = begin; n < end; ++n)

@@ -110,3 +110,14 @@ TEST_CASE("a mesh that reaches a periodic side gives a warning", "[granular][mes
     REQUIRE(notices("[false, true, false]").size() == 1);
     CHECK(notices("[false, true, false]")[0].find("reaches a periodic side along y") != std::string::npos);
 }
+
+TEST_CASE("a mesh in other units than the case gives a warning", "[granular][mesh][case]")
+{
+    CHECK(read(R"("sphere": {"radius": 0.1})").notices.empty());
+    const auto notice = [](const std::string& radius) {
+        const auto all = read("\"sphere\": {\"radius\": " + radius + "}").notices;
+        return all.size() == 1 ? all[0] : "";
+    };
+    CHECK(notice("1000").find("m long, the domain 3.46") != std::string::npos);
+    CHECK(notice("1e-4").find("m long, the diameter of a particle 0.02 m") != std::string::npos);
+}

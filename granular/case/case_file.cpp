@@ -216,11 +216,22 @@ private:
                                       " m: its coordinates must be in m, or have the key scale");
     }
 
-    /// Notes a mesh that reaches a periodic side, across which it has no images.
+    /// Notes a mesh that reaches a periodic side, across which it has no images, or is outside of the domain.
     void check_images(const ObjectReader& o, const NamedBoundary& b)
     {
         const Vec3 low = out.world->low(), high = out.world->high();
         const double lows[] = {low.x, low.y, low.z}, highs[] = {high.x, high.y, high.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto is_beyond = [&](bool above) {
+                return std::all_of(b.mesh->vertex.begin(), b.mesh->vertex.end(), [&](const Vec3& v) {
+                    const Vec3 r = b.boundary.r + rotated(b.boundary.p, v);
+                    const double at[] = {r.x, r.y, r.z};
+                    return above ? at[k] > highs[k] : at[k] < lows[k];
+                });
+            };
+            if (is_beyond(false) || is_beyond(true))
+                out.notices.push_back(o.place() + ": the mesh is outside of the domain along " + "xyz"[k]);
+        }
         for (std::size_t k = 0; k < 3; ++k) {
             if (!world.periodic[k]) continue;
             const bool reaches =
@@ -232,8 +243,9 @@ private:
             if (reaches)
                 out.notices.push_back(
                     o.place() + ": the mesh reaches a periodic side along " + "xyz"[k] +
-                    ", across which it has no images: it acts as a periodic one only if its "
-                    "shape does not change along this axis");
+                    ", across which it has no images: it acts as a periodic one only if its shape "
+                    "does not change along this axis and it extends beyond both sides by the radius of a "
+                    "particle");
         }
     }
 

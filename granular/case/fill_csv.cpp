@@ -2,9 +2,9 @@
 /// Fill csv: particles of a table.
 #include "granular/case/fill.hpp"
 #include "io/archive.hpp"
-#include "io/formats/csv.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/formats/csv.hpp"
 #include "io/option_values.hpp"
 
 #include <algorithm>

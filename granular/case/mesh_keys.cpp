@@ -5,6 +5,7 @@
 #include "granular/mesh/mesh_shapes.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace hilda::granular {
 
@@ -31,6 +32,15 @@ std::vector<std::array<double, 2>> points(ObjectReader& o, std::string_view key,
     return all;
 }
 
+/// An integer of at most 31 bits
+int number(ObjectReader& o, std::string_view key, long fallback)
+{
+    const long n = o.count(key, fallback);
+    if (n > std::numeric_limits<int>::max())
+        o.fail(key, std::string(key) + " must be at most 2147483647, got " + std::to_string(n));
+    return static_cast<int>(n);
+}
+
 TriangleMesh read_box(ObjectReader& o)
 {
     const Vec3 low = o.vec3("low"), high = o.vec3("high");
@@ -41,7 +51,7 @@ TriangleMesh read_box(ObjectReader& o)
 TriangleMesh read_lathe(ObjectReader& o)
 {
     const auto profile = points(o, "profile", 2);
-    return lathe_mesh(profile, static_cast<int>(o.count("segments", 48)));
+    return lathe_mesh(profile, number(o, "segments", 48));
 }
 TriangleMesh read_extrusion(ObjectReader& o)
 {
@@ -56,7 +66,7 @@ TriangleMesh read_plate(ObjectReader& o)
 TriangleMesh read_sphere(ObjectReader& o)
 {
     const double radius = o.positive("radius");
-    return sphere_mesh(radius, static_cast<int>(o.count("divisions", 3)));
+    return sphere_mesh(radius, number(o, "divisions", 3));
 }
 
 struct Source {
@@ -139,7 +149,8 @@ const bool registered = io::Registry<BoundaryType>::add(
       .parts = {"boundary_keys", "body_keys"},
       .keys =
           {{"file",
-            "OBJ or STL file. The file must be below the folder of the case, unless --allow-paths is given.",
+            "OBJ or STL file. A relative path refers to the working directory of the program. The file must "
+            "be below the folder of the case, unless --allow-paths is given.",
             R"("type": "string", "examples": ["plough.stl"])"},
            {"scale", "Factor of the coordinates of the file, for example 0.001 for mm [-].",
             R"("$ref": "#/$defs/positive", "default": 1, "examples": [0.001])"},

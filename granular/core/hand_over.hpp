@@ -67,6 +67,7 @@ struct HandOver {
         if (to == n) return;
         pairs.in_contact[to] = 1, pairs.in_contact[n] = 0;
         move(pairs.history, n, to), move(pairs.rotation_history, n, to), move(pairs.internal, n, to);
+        if (pairs.load == nullptr) return;
         pairs.load_of(n) = {};
         if (pairs.rotation_history != nullptr) pairs.torque_of(n) = {};
     }

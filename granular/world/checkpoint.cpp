@@ -125,7 +125,8 @@ bool valid_attached(const std::vector<AttachedParticle>& all, std::uint32_t ids,
            });
 }
 
-/// All members are equal except those that change during a run: r, axis, v, omega and F, which are finite.
+/// All members are equal except those that change during a run: r, axis, p, v, omega and F, which are
+/// finite.
 bool same_boundary(const Boundary& now, Boundary saved)
 {
     for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F})

@@ -104,7 +104,7 @@ int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
                meshes.triangle.size() + mesh.triangle.size());
     const int number = add(b);
     meshes.add(mesh, static_cast<std::uint32_t>(number), two_sided);
-    engine->set_meshes(meshes);
+    meshes_changed = true;
     return number;
 }
 
@@ -237,6 +237,7 @@ StepParameters World::step_parameters(Part part) const
 /// Gives the boundaries to the engine, and records whether one was changed.
 void World::send_boundaries() const
 {
+    if (std::exchange(meshes_changed, false)) engine->set_meshes(meshes);
     if (engine->set_boundaries(boundaries)) boundaries_changed = true;
 }
 

@@ -403,7 +403,7 @@ private:
     };
     mutable std::vector<BoundaryPlace> boundaries_at_build;  ///< places when the neighbour list was built
     mutable long rebuild_count = 0;
-    mutable bool laws_changed = true;
+    mutable bool laws_changed = true, meshes_changed = false;
     mutable bool particle_lost = false;  ///< a particle is outside the domain, so the list cannot be rebuilt
     float max_speed = 0;                 ///< largest speed of the particles after the last step [m/s]
     long step_count = 0;

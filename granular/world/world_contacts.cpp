@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Queries of contacts at t. Loads are computed again from copies of the histories, so that a query does not
 // change the state.
+#include "granular/core/hand_over.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -40,6 +41,53 @@ struct World::CurrentLoads {
     static std::uint32_t parts(std::uint32_t pairs) { return (pairs + most - 1) / most; }
 };
 
+namespace {
+
+/// The histories of the pairs at the present positions: those of contacts with triangles may have passed to
+/// another triangle since the last step; see HandOver. Copies are made only if there are triangles.
+struct HandedOver {
+    const Float4 *history, *rotation_history, *internal;
+    const std::uint8_t* in_contact;
+
+    HandedOver(const Pairs<par::Cpu>& pairs, const ParticleView& particles, const Surfaces& surfaces,
+               bool has_rotation, bool has_internal)
+        : history(pairs.history.data()), rotation_history(pairs.rotation_history.data()),
+          internal(pairs.internal.data()), in_contact(pairs.in_contact.data())
+    {
+        std::vector<std::uint32_t> which;
+        const HasTriangle has_triangle{pairs.j.data()};
+        for (std::uint32_t n = 0; surfaces.mesh.triangle != nullptr && n < pairs.count; ++n)
+            if (has_triangle(n)) which.push_back(n);
+        if (which.empty()) return;
+        const auto copy = [&](std::vector<Float4>& to, const Float4*& values, bool used) {
+            if (used) to.assign(values, values + pairs.count), values = to.data();
+        };
+        copy(copies[0], history, true), copy(copies[1], rotation_history, has_rotation);
+        copy(copies[2], internal, has_internal);
+        flags.assign(in_contact, in_contact + pairs.count), in_contact = flags.data();
+        const PairView view{.i = pairs.i.data(),
+                            .j = pairs.j.data(),
+                            .law = nullptr,
+                            .history = copies[0].data(),
+                            .rotation_history = has_rotation ? copies[1].data() : nullptr,
+                            .load = nullptr,
+                            .torque = nullptr,
+                            .in_contact = flags.data(),
+                            .count = pairs.count,
+                            .internal = has_internal ? copies[2].data() : nullptr};
+        par::for_each(par::Cpu(), static_cast<std::uint32_t>(which.size()),
+                      HandOver{particles, view, surfaces, which.data(), pairs.start.data()});
+    }
+    HandedOver(const HandedOver&) = delete;
+    HandedOver& operator=(const HandedOver&) = delete;
+
+private:
+    std::vector<Float4> copies[3];
+    std::vector<std::uint8_t> flags;
+};
+
+}  // namespace
+
 /// Calls f(number of a part, CurrentLoads) for all parts of the pairs, in parallel.
 template <class F>
 void World::for_current_loads(const F& f) const
@@ -54,17 +102,17 @@ void World::for_current_loads(const F& f) const
     const LawView law_view{laws.data(), static_cast<int>(laws.size()), surfaces(), h};
     const ParticleView particles = particle_view(domain, of.particle);
     constexpr std::uint32_t most = CurrentLoads::most;
+    const HandedOver from(pairs, particles, law_view.surfaces, rotation_laws, internal);
     par::for_each(
         par::Cpu(), CurrentLoads::parts(pairs.count),
         [&](std::uint32_t part) {
             const std::uint32_t begin = part * most, count = std::min(most, pairs.count - begin);
             const auto now =
                 std::unique_ptr<CurrentLoads>(new CurrentLoads{.of = of, .begin = begin, .count = count});
-            std::copy_n(pairs.history.data() + begin, count, now->history);
-            std::copy_n(pairs.in_contact.data() + begin, count, now->in_contact);
-            if (rotation_laws)
-                std::copy_n(pairs.rotation_history.data() + begin, count, now->rotation_history);
-            if (internal) std::copy_n(pairs.internal.data() + begin, count, now->internal);
+            std::copy_n(from.history + begin, count, now->history);
+            std::copy_n(from.in_contact + begin, count, now->in_contact);
+            if (rotation_laws) std::copy_n(from.rotation_history + begin, count, now->rotation_history);
+            if (internal) std::copy_n(from.internal + begin, count, now->internal);
             find_loads(par::Cpu(), particles,
                        {.i = pairs.i.data() + begin,
                         .j = pairs.j.data() + begin,

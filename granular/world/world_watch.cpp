@@ -193,7 +193,10 @@ void World::throw_overlap() const
             largest, time);
     else
         what += io::formatted(", before t = %.9g s", time);
-    throw OverlapTooLarge(what + "; stiffer contacts, slower grains or a smaller step are needed");
+    what += "; stiffer contacts, slower grains or a smaller step are needed";
+    if (deepest.boundary && boundaries[deepest.j].shape == Boundary::Shape::mesh)
+        what += ", or a mesh whose normals point to the particles";
+    throw OverlapTooLarge(what);
 }
 
 /// Sets the warnings. Throws OverlapTooLarge and EnergyCreated.

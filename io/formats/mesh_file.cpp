@@ -166,6 +166,24 @@ MeshFile parse_obj(std::string_view text, const std::string& name, std::size_t m
             }
             if (corners.size() < 3)
                 lines.refuse("a face must have at least three corners, got " + in_quotes(lines.line));
+            const auto normal = [&](std::size_t k) {
+                const auto corner = [&](std::size_t c) {
+                    return mesh.vertices[static_cast<std::size_t>(corners[c])];
+                };
+                const std::array<double, 3> a = corner(0), b = corner(k), c = corner(k + 1);
+                std::array<double, 3> n{};
+                for (std::size_t x = 0; x < 3; ++x) {
+                    const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+                    n[x] = (b[y] - a[y]) * (c[z] - a[z]) - (b[z] - a[z]) * (c[y] - a[y]);
+                }
+                return n;
+            };
+            for (std::size_t k = 2; k + 1 < corners.size(); ++k) {
+                const auto m = normal(k - 1), n = normal(k);
+                if (m[0] * n[0] + m[1] * n[1] + m[2] * n[2] < 0)
+                    lines.refuse("a face of more than three corners must be convex, got " +
+                                 in_quotes(lines.line));
+            }
             for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
                 mesh.triangles.push_back({corners[0], corners[k], corners[k + 1]});
                 mesh.triangle_line.push_back(lines.number);
@@ -185,7 +203,12 @@ MeshFile parse_stl(std::string_view bytes, const std::string& name, std::size_t 
                         bytes.size() == header + sizeof count + each * std::size_t{count};
     const std::string_view text = without_byte_order_mark(bytes);
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    const bool is_text = begin != std::string_view::npos && text.substr(begin).starts_with("solid");
+    const bool is_text = begin != std::string_view::npos && [&] {
+        constexpr std::string_view word = "solid";
+        const std::string_view first = text.substr(begin, word.size());
+        return std::equal(first.begin(), first.end(), word.begin(), word.end(),
+                          [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+    }();
     if (!binary && is_text) return parse_stl_text(text, name, most);
     if (!binary)
         throw InvalidInput(name + ": is no STL file: a text begins with solid, and a binary file of " +

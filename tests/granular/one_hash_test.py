@@ -35,7 +35,7 @@ COMMON = {"step": STEP, "end": STEP * STEPS, "interval": STEP * 30, "frame_inter
           "materials": MATERIALS, "laws": LAWS}
 
 # Small grains, large balls and single particles with a force, fixed and rotating, or attached to a boundary. The grains flow out
-# of the domain; a shaken floor, a rotating cylinder and a heavy lid move.
+# of the domain; a shaken floor, a rotating cylinder, a rotating plate of triangles and a heavy lid move.
 DAM = dict(COMMON, gravity=[3, 0, -9.81], domain={"low": [-0.003, -0.003, -0.003], "high": [0.0085, 0.011, 0.016],
                                                   "outflow": ["+x"], "lost": "delete"},
            boundaries=[{"name": "floor", "type": "plane", "normal": [0, 0, 1], "r": [0, 0, "5e-5*sin(2*pi*300*t)"],
@@ -46,7 +46,10 @@ DAM = dict(COMMON, gravity=[3, 0, -9.81], domain={"low": [-0.003, -0.003, -0.003
                        {"name": "roller", "type": "cylinder", "axis": [0, 1, 0], "r": [0.0043, 0, 0.0084], "radius": 1e-3,
                         "omega": [0, "100*(1+t)", 0], "material": "rubber"},
                        {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": [0, 0, 0.014], "v": [0, 0, -0.5], "mass": 1e-3,
-                        "inertia": 1e-7, "F": [0, 0, "-20*t"], "free": [False, False, True], "material": "steel"}],
+                        "inertia": 1e-7, "F": [0, 0, "-20*t"], "free": [False, False, True], "material": "steel"},
+                       {"name": "paddle", "type": "mesh", "plate": {"width_x": 0.003, "width_y": 0.005, "edge": 3e-4},
+                        "two_sided": True, "rotation": [0, 1.5707963267948966, 0], "r": [0.00815, 0.004, 0.003],
+                        "omega": [0, 30, 0], "material": "steel"}],
            particles=[{"r": [0.0005 + 0.0012 * k, 0.0008, 0.0004], "radius": 3e-4, "material": "steel", "attached_to": "floor"}
                       for k in range(4)] +
                      [{"r": [0.0043, 0.001 + 0.002 * k, 0.0074], "radius": 3e-4, "material": "glass", "attached_to": "roller"}
@@ -69,7 +72,9 @@ REPLICAS = dict(COMMON, integrator="chung", gravity=[1, 0.5, -9.81],
                             {"name": "ball", "type": "sphere", "radius": 1e-3, "r": ["0.004+1e-4*sin(2*pi*200*t)", 0.004, 0.0054],
                              "omega": [0, 0, 300], "material": "rubber"},
                             {"name": "post", "type": "cone", "axis": [0, 0, 1], "half_angle": 0.3, "r": [0.009, 0.002, 0.0043],
-                             "v": ["0.3", 0, 0], "omega": [0, 0, "2e5*t"], "material": "glass"}],
+                             "v": ["0.3", 0, 0], "omega": [0, 0, "2e5*t"], "material": "glass"},
+                            {"name": "bump", "type": "mesh", "sphere": {"radius": 8e-4, "divisions": 2}, "r": [0.002, 0.01, 0.0052],
+                             "v": [0, 0, "-0.3"], "omega": [200, 0, 0], "material": "rubber"}],
                 particles=[{"r": [0.0002, 0.0005 + 0.0018 * k, 0.0046], "radius": 3e-4, "material": "glass", "replica": k,
                             "attached_to": "floor"} for k in range(3)] +
                           [{"r": [0.0065, 0.0065, 0.0064], "radius": 2e-3, "material": "rubber", "replica": k, "v": [0.5, 0, -0.6],

@@ -7,9 +7,16 @@
 /// there is one contact for each local minimum. A point p is outside of a triangle across an edge if it is in
 /// front of the plane through the edge that is perpendicular to the triangle and faces away from it.
 ///
-/// - triangle: p is not outside across any of its edges,
+/// - triangle: p is not outside across any of its edges, and not closer to the plane of a neighbour across a
+///             smooth concave edge,
 /// - edge ab:  p is outside of both triangles, (p - a) · (b - a) > 0 and (p - b) · (a - b) > 0,
 /// - vertex v: (p - v) · e ≤ 0 for all edges e that leave v.
+///
+/// An edge is smooth if the normals of its triangles differ by less than 20 degrees. On its concave side p is
+/// above both triangles, at two minima of the distance from the triangles that approximate one minimum of a
+/// curved surface. The closer triangle alone has the contact. The distance and the energy of the contact are
+/// then continuous. Two contacts would double the force where an overlap δ > R θ²/2 exceeds the height of the
+/// edge, with the angle θ between the normals; at 20 degrees that is an overlap of 6 % of R.
 ///
 /// The triangles of an edge or vertex evaluate the same expressions, and the planes of an edge between
 /// coplanar triangles have opposite coefficients, so that rounding errors do not lead to different decisions.
@@ -31,12 +38,20 @@ struct MeshPlane {
 
 /// A triangle of a mesh, in its frame. Edge k leads from vertex k to vertex k + 1, modulo 3.
 struct MeshTriangle {
-    enum : std::uint32_t { two_sided = 1, owns_edge = 2, owns_vertex = 16 };
+    enum : std::uint32_t {
+        two_sided = 1,
+        owns_edge = 2,
+        owns_vertex = 16,
+        smooth_concave = 128,
+        smooth_convex = 1024
+    };
 
     std::uint32_t vertex[3];
     std::uint32_t across[3];  ///< the triangle on the other side of each edge, or no_triangle
     std::uint32_t boundary;   ///< number of the boundary to which the mesh belongs
-    std::uint32_t flags;      ///< two_sided, owns_edge << k, owns_vertex << k
+    /// two_sided, owns_edge << k, owns_vertex << k; smooth_concave << k or smooth_convex << k, seen from the
+    /// front, if edge k is smooth and not within a plane
+    std::uint32_t flags;
     MeshPlane face;
     MeshPlane edge[3];  ///< perpendicular to the triangle; the normals point away from it
 };
@@ -56,6 +71,22 @@ namespace detail {
 HILDA_HD inline int edge_from(const MeshTriangle& T, std::uint32_t v)
 {
     return T.vertex[0] == v ? 0 : T.vertex[1] == v ? 1 : 2;
+}
+
+/// Whether p, which is above the triangle t at the given height, is closer to the plane of a neighbour across
+/// a smooth edge that is concave on this side: it is then beyond the plane that bisects the edge. Of two
+/// triangles at the same height the one with the lower number is the closer one.
+HILDA_HD inline bool has_closer_neighbour(const MeshView& mesh, std::uint32_t t, const Vec3& p, double height)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const double sign = height < 0 ? -1 : 1;
+    const std::uint32_t concave = height < 0 ? MeshTriangle::smooth_convex : MeshTriangle::smooth_concave;
+    for (int k = 0; k < 3; ++k) {
+        if ((T.flags & concave << k) == 0) continue;
+        const double other = sign * mesh.triangle[T.across[k]].face.height(p), own = sign * height;
+        if (other < own || (other == own && T.across[k] < t)) return true;
+    }
+    return false;
 }
 
 /// The minimum at the closest point q on a feature whose normals have the sum `normal`
@@ -82,8 +113,8 @@ HILDA_HD inline Nearest nearest(const MeshView& mesh, std::uint32_t t, const Vec
     const bool two_sided = (T.flags & MeshTriangle::two_sided) != 0;
     const double outside[3] = {T.edge[0].height(p), T.edge[1].height(p), T.edge[2].height(p)};
     if (outside[0] < 0 && outside[1] < 0 && outside[2] < 0) {
-        if (height >= 0) return {height, T.face.n};
-        return two_sided ? Nearest{-height, -T.face.n} : none;
+        if ((height < 0 && !two_sided) || detail::has_closer_neighbour(mesh, t, p, height)) return none;
+        return height < 0 ? Nearest{-height, -T.face.n} : Nearest{height, T.face.n};
     }
     if (outside[0] >= reach || outside[1] >= reach || outside[2] >= reach) return none;
     for (int k = 0; k < 3; ++k) {

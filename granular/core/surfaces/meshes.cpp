@@ -7,6 +7,8 @@
 
 namespace hilda::granular {
 
+constexpr double smooth_cosine = 0.93969262078590843;  // of 20 degrees
+
 void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_sided)
 {
     const auto first_vertex = static_cast<std::uint32_t>(vertex.size()),
@@ -69,9 +71,16 @@ void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_side
             MeshTriangle& b = triangle[first + edges[k + 1].triangle];
             a.across[edges[k].number] = first + edges[k + 1].triangle;
             b.across[edges[k + 1].number] = first + edges[k].triangle;
-            if (a.face.n.dot(b.face.n) > 0 && a.face.n.cross(b.face.n).norm() < 1e-12) {
+            const double cosine = a.face.n.dot(b.face.n);
+            if (cosine > 0 && a.face.n.cross(b.face.n).norm() < 1e-12) {
                 const MeshPlane& plane = a.edge[edges[k].number];
                 b.edge[edges[k + 1].number] = {-plane.n, -plane.offset};
+            } else if (cosine > smooth_cosine) {
+                const std::uint32_t apex = b.vertex[(edges[k + 1].number + 2) % 3];
+                const bool concave = a.face.height(vertex[apex]) > 0;
+                const std::uint32_t flag =
+                    concave ? MeshTriangle::smooth_concave : MeshTriangle::smooth_convex;
+                a.flags |= flag << edges[k].number, b.flags |= flag << edges[k + 1].number;
             }
         }
         ++count[edges[k].low], ++count[edges[k].high];

@@ -185,6 +185,21 @@ TEST_CASE("a two-sided plate has contacts on both sides and at its rim", "[granu
     }
 }
 
+TEST_CASE("inside of a sphere of triangles a grain has one contact, with the closest one", "[granular][mesh]")
+{
+    granular::Random random(23);
+    TriangleMesh shape = granular::sphere_mesh(1, 2);  // angles between the normals up to 18 degrees
+    for (auto& t : shape.triangle) std::swap(t[1], t[2]);
+    const Meshes meshes = meshes_of(shape);
+    const double R = 0.15;
+    for (int k = 0; k < 2000; ++k) {
+        const Vec3 p = random.number(0.87, 0.97) * random.direction();
+        const std::vector<Nearest> found = minima(meshes, p, R);
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].distance == Approx(least_distance(meshes, p)).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("a triangle may own a minimum wherever it owns one within the slack", "[granular][mesh]")
 {
     granular::Random random(19);

@@ -152,6 +152,46 @@ TEST_CASE("a moving mesh carries a ball as a moving plane does", "[granular][mes
     CHECK((found.v - expected.v).norm() < 1e-3);
 }
 
+TEST_CASE("a ball in a tube of triangles keeps its energy", "[granular][mesh]")
+{
+    const int segments = GENERATE(48, 400, 2000);
+    WorldOptions o = options();
+    // slides to and fro across the generators, with an overlap up to 1 % of the radius
+    o.gravity = {-9.81, 0, 0};
+    World tube(o, {glass()});
+    tube.set_law(0, 0, hertz_mindlin(glass(), 1, 0));
+    tube.add(mesh_boundary(), granular::lathe_mesh({{0.03, -0.1}, {0.03, 0.1}}, segments));
+    const double a = 0.9, far = 0.03 * std::cos(M_PI / segments) - 1.0005 * R;
+    tube.add(ball({-far * std::cos(a), far * std::sin(a), 0.0013}));
+    const auto energy = [&] {
+        const Particle p = tube.particles()[0];
+        return p.mass * (0.5 * p.v.dot(p.v) + 9.81 * p.r.x);
+    };
+    const double start = energy(), scale = 0.009 * 9.81 * tube.particles()[0].mass;
+    double most = 0;
+    for (int k = 0; k < 300; ++k) {
+        tube.step(100);
+        CHECK(tube.contacts().size() <= 1);
+        most = std::max(most, energy() - start);
+    }
+    CHECK(most < 0.01 * scale);
+}
+
+TEST_CASE("the contacts at an instant have the friction of the step, also across edges", "[granular][mesh]")
+{
+    World plane = empty_world(), mesh = empty_world();
+    plane.add(Boundary{});
+    mesh.add(mesh_boundary(), granular::plate_mesh(1, 1, 0.013));
+    const Particle start = ball({-0.3, -0.12, 0.999 * R}, {1, 0.37, 0});
+    plane.add(start), mesh.add(start);
+    plane.step(1000), mesh.step(1000);
+    for (int k = 0; k < 400; ++k) {  // crosses several edges
+        plane.step(10), mesh.step(10);
+        const Vec3 expected = plane.wrench(0).F, found = mesh.wrench(0).F;
+        REQUIRE((found - expected).norm() < 0.02 * expected.norm());
+    }
+}
+
 TEST_CASE("a bed in a box of triangles has the contacts of a box of planes", "[granular][mesh]")
 {
     WorldOptions o = options();

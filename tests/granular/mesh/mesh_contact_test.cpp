@@ -231,9 +231,11 @@ TEST_CASE("a world with a mesh has the same bits for any number of threads and a
         drum.omega = {0, 6, 0};
         world.add(drum, granular::box_mesh({-0.06, -0.06, -0.06}, {0.06, 0.06, 0.06}, {}, true, 0.025));
         granular::Random random(1);
-        for (int k = 0; k < 100; ++k)
-            world.add(ball({-0.045 + 0.0215 * (k % 5) + random.number(-0.0005, 0.0005),
-                            -0.045 + 0.0215 * (k / 5 % 5), -0.045 + 0.0215 * (k / 25)}));
+        for (int k = 0; k < 100; ++k) {
+            const int row = k / 5 % 5, layer = k / 25;
+            world.add(ball({-0.045 + 0.0215 * (k % 5) + random.number(-0.0005, 0.0005), -0.045 + 0.0215 * row,
+                            -0.045 + 0.0215 * layer}));
+        }
         return world;
     };
     World one = make();

@@ -23,7 +23,8 @@ struct MeshFile {
     std::string message(const TriangleMesh::Fault& fault) const;
 };
 
-/// The functions of io/mesh_file.hpp with these limits. The mesh is not checked, see TriangleMesh::fault().
+/// The functions of io/formats/mesh_file.hpp with these limits. The mesh is not checked, see
+/// TriangleMesh::fault().
 MeshFile read_mesh_file(const std::string& path);
 MeshFile parse_obj(std::string_view text, const std::string& name);
 MeshFile parse_stl(std::string_view bytes, const std::string& name);

@@ -16,7 +16,7 @@ struct NamedBoundary {
     Boundary boundary;
     std::optional<TriangleMesh> mesh = {};  ///< of a boundary with Shape::mesh
     bool two_sided = false;                 ///< whether the particles may be on both sides of the mesh
-    BoundaryMotion motion = {};  ///< prescribed motion and load; the boundary number is not set
+    BoundaryMotion motion = {};             ///< prescribed motion and load; the boundary number is not set
 
     /// Whether the boundary moves under its loads or by a prescribed velocity
     bool moves() const

@@ -191,16 +191,6 @@ private:
         o.finish();
     }
 
-    /// Diagonal of the box around a mesh [m]
-    static double mesh_size(const TriangleMesh& mesh)
-    {
-        Vec3 low = mesh.vertex[0], high = low;
-        for (const Vec3& v : mesh.vertex) {
-            low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-            high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-        }
-        return (high - low).norm();
-    }
     /// Notes meshes that are much larger than the domain or smaller than the particles, as with other units.
     void check_mesh_sizes()
     {
@@ -217,35 +207,25 @@ private:
     }
 
     /// Notes a mesh that reaches a periodic side, across which it has no images, or is outside of the domain.
-    void check_images(const ObjectReader& o, const NamedBoundary& b)
+    void check_place(const ObjectReader& o, const NamedBoundary& b)
     {
+        BoundingBox box;
+        for (const Vec3& v : b.mesh->vertex) box.add(b.boundary.r + rotated(b.boundary.p, v));
+        meshes.emplace_back(o.place(), (box.high - box.low).norm());
         const Vec3 low = out.world->low(), high = out.world->high();
-        const double lows[] = {low.x, low.y, low.z}, highs[] = {high.x, high.y, high.z};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto is_beyond = [&](bool above) {
-                return std::all_of(b.mesh->vertex.begin(), b.mesh->vertex.end(), [&](const Vec3& v) {
-                    const Vec3 r = b.boundary.r + rotated(b.boundary.p, v);
-                    const double at[] = {r.x, r.y, r.z};
-                    return above ? at[k] > highs[k] : at[k] < lows[k];
-                });
-            };
-            if (is_beyond(false) || is_beyond(true))
-                out.notices.push_back(o.place() + ": the mesh is outside of the domain along " + "xyz"[k]);
-        }
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (!world.periodic[k]) continue;
-            const bool reaches =
-                std::any_of(b.mesh->vertex.begin(), b.mesh->vertex.end(), [&](const Vec3& v) {
-                    const Vec3 r = b.boundary.r + rotated(b.boundary.p, v);
-                    const double at[] = {r.x, r.y, r.z};
-                    return at[k] <= lows[k] || at[k] >= highs[k];
-                });
-            if (reaches)
+        for (const auto& [axis, from, to, least, most] :
+             {std::tuple{0u, box.low.x, box.high.x, low.x, high.x},
+              {1u, box.low.y, box.high.y, low.y, high.y},
+              {2u, box.low.z, box.high.z, low.z, high.z}}) {
+            const std::string place = o.place() + ": the mesh ";
+            if (to < least || from > most)
+                out.notices.push_back(place + "is outside of the domain along " + "xyz"[axis]);
+            else if (world.periodic[axis] && (from <= least || to >= most))
                 out.notices.push_back(
-                    o.place() + ": the mesh reaches a periodic side along " + "xyz"[k] +
-                    ", across which it has no images: it acts as a periodic one only if its shape "
-                    "does not change along this axis and it extends beyond both sides by the radius of a "
-                    "particle");
+                    place + "reaches a periodic side along " + "xyz"[axis] +
+                    ", across which it has no images: it acts as a periodic one only if its "
+                    "shape does not change along this axis and it extends beyond both sides "
+                    "by the radius of a particle");
         }
     }
 
@@ -264,7 +244,7 @@ private:
             n.motion.boundary = o.located([&] {
                 return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
             });
-            if (n.mesh) check_images(o, n), meshes.emplace_back(o.place(), mesh_size(*n.mesh));
+            if (n.mesh) check_place(o, n);
             if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
             if (n.moves()) out.moving.push_back(n.motion.boundary);
             if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
@@ -373,7 +353,7 @@ private:
     std::vector<Material> materials;
     std::map<std::pair<int, int>, std::string> law_places;  ///< by the smaller and the larger material index
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
-    std::vector<std::pair<std::string, double>> meshes;  ///< places and sizes [m]
+    std::vector<std::pair<std::string, double>> meshes;  ///< places and diagonals [m]
     std::string free;                                    ///< pointer of the first boundary with a mass
     double largest = 0;  ///< diameter of the particles that are given one by one [m]
     bool rotation_laws = false;

@@ -4,7 +4,6 @@
 #include "granular/mesh/mesh_file.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace hilda::granular {
@@ -116,9 +115,7 @@ std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
     b.boundary.shape = Boundary::Shape::mesh;
     b.mesh = read_triangles(o);
     b.two_sided = o.flag("two_sided", false);
-    const Vec3 angle = o.vec3("rotation", Vec3{0, 0, 0});
-    const double half = 0.5 * angle.norm();
-    b.boundary.p = {std::cos(half), (half > 0 ? std::sin(half) / (2 * half) : 0.5) * angle};
+    b.boundary.p = turned({1, {0, 0, 0}}, o.vec3("rotation", Vec3{0, 0, 0}));
     o.located([&] { check_mesh(*b.mesh, b.name); });
     return {b};
 }

@@ -52,8 +52,8 @@ bool BoundaryBlocks::update(const CellGrid& grid, double reach, const std::vecto
         near[b].clear();
         if (boundaries[b].shape != Boundary::Shape::mesh)
             search(boundaries[b], {{0, 0, 0}, blocks}, static_cast<std::uint32_t>(b), near[b]);
-        for (const Meshes::Part& part : meshes.part)
-            for (std::uint32_t t = part.first; part.boundary == b && t < part.end; ++t)
+        else if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(b)))
+            for (std::uint32_t t = part->first; t < part->end; ++t)
                 search_triangle(boundaries[b], meshes, t, near[b]);
         changed = true;
     }
@@ -82,14 +82,10 @@ void BoundaryBlocks::search_triangle(const Boundary& b, const Meshes& meshes, st
                                      std::vector<Near>& found) const
 {
     const MeshTriangle& T = meshes.triangle[t];
-    Vec3 low{1e300, 1e300, 1e300}, high = -low;
-    for (const std::uint32_t v : T.vertex) {
-        const Vec3 r = b.r + rotated(b.p, meshes.vertex[v]);
-        low = {std::min(low.x, r.x), std::min(low.y, r.y), std::min(low.z, r.z)};
-        high = {std::max(high.x, r.x), std::max(high.y, r.y), std::max(high.z, r.z)};
-    }
+    BoundingBox box;
+    for (const std::uint32_t v : T.vertex) box.add(b.r + rotated(b.p, meshes.vertex[v]));
     const Vec3 n = rotated(b.p, T.face.n), a = b.r + rotated(b.p, meshes.vertex[T.vertex[0]]);
-    const double lows[] = {low.x, low.y, low.z}, highs[] = {high.x, high.y, high.z};
+    const double lows[] = {box.low.x, box.low.y, box.low.z}, highs[] = {box.high.x, box.high.y, box.high.z};
     std::int32_t first[3], last[3];
     double size[3];
     for (std::size_t k = 0; k < 3; ++k) {

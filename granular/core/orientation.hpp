@@ -28,6 +28,17 @@ HILDA_HD inline Vec<double> rotated_back(const EulerParameters<double>& p, const
     return rotated({p.e0, -p.e}, x);
 }
 
+/// exp(angle/2) ⊗ p, normalised: the rotation p followed by the rotation vector `angle` in the global frame
+inline EulerParameters<double> turned(const EulerParameters<double>& p, const Vec<double>& angle)
+{
+    const double half = 0.5 * angle.norm();
+    const double cosine = std::cos(half);
+    const Vec<double> s = (half > 0 ? std::sin(half) / (2 * half) : 0.5) * angle;
+    const EulerParameters<double> q{cosine * p.e0 - s.dot(p.e), cosine * p.e + p.e0 * s + s.cross(p.e)};
+    const double length = std::sqrt(q.e0 * q.e0 + q.e.dot(q.e));
+    return {q.e0 / length, (1 / length) * q.e};
+}
+
 /// Increment d of the Euler parameters for a rotation by `angle`, a rotation vector in the global frame
 /// [rad].
 ///

@@ -3,8 +3,6 @@
 
 #include "io/formats/mesh_file.hpp"
 
-#include <map>
-
 namespace hilda::granular {
 
 TriangleMesh read_mesh(const std::string& path)
@@ -13,18 +11,10 @@ TriangleMesh read_mesh(const std::string& path)
     const io::MeshFile file = io::read_mesh_file(path, most_bytes, TriangleMesh::most_triangles);
     TriangleMesh mesh;
     mesh.vertex.reserve(file.vertices.size()), mesh.triangle.reserve(file.triangles.size());
-    // The vertices of an OBJ file may be repeated for each face.
-    std::map<std::array<double, 3>, std::uint32_t> known;
-    std::vector<std::uint32_t> number;
-    for (const auto& [x, y, z] : file.vertices) {
-        const auto [at, is_new] = known.try_emplace({x + 0., y + 0., z + 0.},  // -0 becomes 0
-                                                    static_cast<std::uint32_t>(mesh.vertex.size()));
-        if (is_new) mesh.vertex.push_back({x, y, z});
-        number.push_back(at->second);
-    }
+    for (const auto& [x, y, z] : file.vertices) mesh.vertex.push_back({x, y, z});
     for (const auto& [a, b, c] : file.triangles)
-        mesh.triangle.push_back({number[static_cast<std::size_t>(a)], number[static_cast<std::size_t>(b)],
-                                 number[static_cast<std::size_t>(c)]});
+        mesh.triangle.push_back(
+            {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
     return mesh;
 }
 

@@ -7,8 +7,8 @@
 
 namespace hilda::granular {
 
-/// Reads an OBJ or STL file; see io/formats/mesh_file.hpp. The coordinates are in m. Vertices with equal
-/// coordinates become one. The mesh is not checked, see check_mesh(). Throws io::InvalidInput.
+/// Reads an OBJ or STL file; see io/formats/mesh_file.hpp. The coordinates are in m. The mesh is not checked,
+/// see check_mesh(). Throws io::InvalidInput.
 TriangleMesh read_mesh(const std::string& path);
 
 }  // namespace hilda::granular

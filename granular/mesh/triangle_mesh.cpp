@@ -174,15 +174,18 @@ struct Moments {
 Vec3 middle(const std::vector<Vec3>& vertices)
 {
     if (vertices.empty()) return {0, 0, 0};
-    Vec3 low = vertices[0], high = vertices[0];
-    for (const Vec3& v : vertices) {
-        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    return 0.5 * low + 0.5 * high;
+    BoundingBox box;
+    for (const Vec3& v : vertices) box.add(v);
+    return 0.5 * box.low + 0.5 * box.high;
 }
 
 }  // namespace
+
+void BoundingBox::add(const Vec3& r)
+{
+    low = {std::min(low.x, r.x), std::min(low.y, r.y), std::min(low.z, r.z)};
+    high = {std::max(high.x, r.x), std::max(high.y, r.y), std::max(high.z, r.z)};
+}
 
 void check_mesh(const TriangleMesh& mesh, const std::string& name)
 {

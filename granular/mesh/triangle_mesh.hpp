@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,14 @@ struct TriangleMesh {
     std::vector<std::array<std::uint32_t, 3>> triangle;  ///< indices of the vertices a, b, c
 
     static constexpr std::size_t most_triangles = std::size_t{1} << 22;
+};
+
+/// The smallest box with edges along the axes around points; low > high without a point
+struct BoundingBox {
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+    Vec3 low = {infinite, infinite, infinite}, high = {-infinite, -infinite, -infinite};
+
+    void add(const Vec3& r);
 };
 
 /// Throws io::InvalidInput "NAME: ..." with the number of the triangle, counted from 0, if the mesh has no

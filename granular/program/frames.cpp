@@ -5,8 +5,8 @@
 #include "granular/world/boundary_drawing.hpp"
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
-#include "io/message.hpp"
 #include "io/formats/vtk.hpp"
+#include "io/message.hpp"
 
 #include <cstdio>
 #include <filesystem>

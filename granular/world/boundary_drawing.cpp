@@ -97,15 +97,14 @@ std::pair<double, double> extent(const Boundary& b, const Vec3& low, const Vec3&
 Polygons mesh_drawing(const Boundary& b, const Meshes& meshes, std::uint32_t of)
 {
     Polygons all;
-    for (const Meshes::Part& part : meshes.part) {
-        if (part.boundary != of) continue;
-        for (std::uint32_t v = part.first_vertex; v < part.end_vertex; ++v)
-            all.point.push_back(b.r + rotated(b.p, meshes.vertex[v]));
-        for (std::uint32_t t = part.first; t < part.end; ++t) {
-            all.polygon.emplace_back();
-            for (const std::uint32_t v : meshes.triangle[t].vertex)
-                all.polygon.back().push_back(static_cast<int>(v - part.first_vertex));
-        }
+    const Meshes::Part* const part = meshes.part_of(of);
+    if (part == nullptr) return all;
+    for (std::uint32_t v = part->first_vertex; v < part->end_vertex; ++v)
+        all.point.push_back(b.r + rotated(b.p, meshes.vertex[v]));
+    for (std::uint32_t t = part->first; t < part->end; ++t) {
+        all.polygon.emplace_back();
+        for (const std::uint32_t v : meshes.triangle[t].vertex)
+            all.polygon.back().push_back(static_cast<int>(v - part->first_vertex));
     }
     return all;
 }

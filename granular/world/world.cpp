@@ -71,6 +71,13 @@ void World::set_law(int i, int j, const PairLaw& law)
 
 int World::add(const Boundary& b)
 {
+    if (b.shape == Boundary::Shape::mesh)
+        throw io::InvalidInput("boundary: a mesh must be added with its triangles, got none");
+    return add_boundary(b);
+}
+
+int World::add_boundary(const Boundary& b)
+{
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
     if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
@@ -102,7 +109,7 @@ int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
     if (meshes.triangle.size() + mesh.triangle.size() > TriangleMesh::most_triangles)
         refuse(name, "all meshes must not have more than 2^22 triangles",
                meshes.triangle.size() + mesh.triangle.size());
-    const int number = add(b);
+    const int number = add_boundary(b);
     meshes.add(mesh, static_cast<std::uint32_t>(number), two_sided);
     meshes_changed = true;
     return number;
@@ -278,9 +285,9 @@ double World::move_boundaries()
         const double angle = h * b.omega.norm();
         if (b.shape == Boundary::Shape::mesh) {
             if (angle > 0) b.p = turned(b.p, h * b.omega);
-            for (const Meshes::Part& part : meshes.part)
-                if (part.boundary == k)  // also of the centres of particles in contact
-                    displacement += angle * (part.radius + double{domain.largest} + domain.skin);
+            if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(k)))
+                // also of the centres of particles in contact
+                displacement += angle * (part->radius + double{domain.largest} + domain.skin);
         } else if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * b.omega;
             const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +

@@ -355,6 +355,7 @@ private:
     StepParameters step_parameters(Part part) const;
     bool laws_have_energy() const;
     bool boundaries_move();
+    int add_boundary(const Boundary& boundary);
     void send_boundaries() const;
     Surfaces surfaces() const { return {boundaries.data(), meshes.view()}; }
     bool is_sample() const;

@@ -43,17 +43,6 @@ inline double sphere_mass(double radius, double density)
     return 4.0 / 3 * M_PI * radius * radius * radius * density;
 }
 
-/// exp(angle/2) ⊗ p, normalised: the rotation p followed by the rotation vector `angle` in the global frame
-inline EulerParameters<double> turned(const EulerParameters<double>& p, const Vec3& angle)
-{
-    const double half = 0.5 * angle.norm();
-    const double cosine = std::cos(half);
-    const Vec3 s = (half > 0 ? std::sin(half) / (2 * half) : 0.5) * angle;
-    const EulerParameters<double> q{cosine * p.e0 - s.dot(p.e), cosine * p.e + p.e0 * s + s.cross(p.e)};
-    const double length = std::sqrt(q.e0 * q.e0 + q.e.dot(q.e));
-    return {q.e0 / length, (1 / length) * q.e};
-}
-
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 inline bool finite(const Float4& a)
 {

@@ -144,15 +144,16 @@ MeshFile parse_stl_text(std::string_view text, const std::string& name, std::siz
 MeshFile parse_obj(std::string_view text, const std::string& name, std::size_t most)
 {
     MeshFile mesh{.name = name, .vertices = {}, .triangles = {}, .vertex_line = {}, .triangle_line = {}};
+    Corners vertices(mesh);
+    std::vector<int> number;  // of the vertex of each line v
     Lines lines(without_byte_order_mark(text), name);
     while (lines.next()) {
         if (lines.first == "v") {
-            mesh.vertices.push_back(lines.point());
-            mesh.vertex_line.push_back(lines.number);
+            number.push_back(vertices.number(lines.point(), lines.number));
         } else if (lines.first == "f") {
             // a corner is v, v/vt, v//vn or v/vt/vn; v counts from 1, or from the last vertex if negative
             std::vector<int> corners;
-            const int known = static_cast<int>(mesh.vertices.size());
+            const int known = static_cast<int>(number.size());
             for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
                 int v = 0;
                 const std::string_view digits = word.substr(0, word.find('/'));
@@ -162,7 +163,7 @@ MeshFile parse_obj(std::string_view text, const std::string& name, std::size_t m
                 if (v == 0 || v > known || v < -known)
                     lines.refuse("vertex " + std::to_string(v) +
                                  " is not defined; the number of vertices is " + std::to_string(known));
-                corners.push_back(v > 0 ? v - 1 : known + v);
+                corners.push_back(number[static_cast<std::size_t>(v > 0 ? v - 1 : known + v)]);
             }
             if (corners.size() < 3)
                 lines.refuse("a face must have at least three corners, got " + in_quotes(lines.line));

@@ -20,17 +20,16 @@ struct MeshFile {
 
 /// Reads a mesh file by its ending, .obj or .stl, in upper or lower case. The line ends are those of Unix or
 /// Windows. Throws InvalidInput "FILE:LINE: what is wrong, the value" for a file that cannot be read, that
-/// has more than max_bytes or more than `most` triangles, or that is not of its format. The mesh is not
-/// checked.
+/// has more than max_bytes or more than `most` triangles, or that is not of its format. Vertices with equal
+/// coordinates become one. The mesh is not checked.
 MeshFile read_mesh_file(const std::string& path, std::size_t max_bytes, std::size_t most);
 
 /// An OBJ text. The lines v (x, y, z) and f (vertex numbers from 1, or negative ones from the last vertex)
-/// are read, a polygon is split into a fan of triangles; other lines are ignored.
+/// are read, a convex polygon is split into a fan of triangles; other lines are ignored.
 MeshFile parse_obj(std::string_view text, const std::string& name, std::size_t most);
 
 /// An STL file, binary if its length is 84 + 50 n bytes for the n triangles of its header, otherwise text.
-/// Corners with equal coordinates become one vertex. The normals of the file are ignored: the order of the
-/// corners counts.
+/// The normals of the file are ignored: the order of the corners counts.
 MeshFile parse_stl(std::string_view bytes, const std::string& name, std::size_t most);
 
 }  // namespace hilda::io

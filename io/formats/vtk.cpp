@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/formats/vtk.hpp"
 
-#include "io/formats/csv.hpp"
 #include "io/error.hpp"
+#include "io/formats/csv.hpp"
 
 #include <cstdint>
 #include <fstream>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/csv_table.hpp"
 
-#include "io/formats/csv.hpp"
 #include "io/files.hpp"
+#include "io/formats/csv.hpp"
 #include "io/option_values.hpp"
 #include "lie/check.hpp"
 

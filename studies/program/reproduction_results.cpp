@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Reading of the results of studies for the page of `hilda reproduce`.
-#include "io/formats/csv.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/formats/csv.hpp"
 #include "io/json_source.hpp"
 #include "io/option_values.hpp"
 #include "studies/program/reproduction_page.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Text of numbers, names and command lines, and the checksum.
 #include "io/archive.hpp"
-#include "io/formats/csv.hpp"
 #include "io/error.hpp"
+#include "io/formats/csv.hpp"
 #include "io/message.hpp"
 #include "io/provenance.hpp"
 

@@ -9,6 +9,13 @@ namespace hilda::granular {
 
 constexpr double smooth_cosine = 0.93969262078590843;  // of 20 degrees
 
+const Meshes::Part* Meshes::part_of(std::uint32_t boundary) const
+{
+    const auto at = std::lower_bound(part.begin(), part.end(), boundary,
+                                     [](const Part& p, std::uint32_t b) { return p.boundary < b; });
+    return at != part.end() && at->boundary == boundary ? &*at : nullptr;
+}
+
 void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_sided)
 {
     const auto first_vertex = static_cast<std::uint32_t>(vertex.size()),

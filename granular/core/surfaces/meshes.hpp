@@ -19,9 +19,12 @@ struct Meshes {
         std::uint32_t boundary, first, end, first_vertex, end_vertex;
         double radius;  ///< largest distance of a vertex from the origin of its frame [m]
     };
-    std::vector<Part> part;
+    std::vector<Part> part;  ///< in ascending order of the boundaries
+    /// The mesh of a boundary; nullptr if it has none
+    const Part* part_of(std::uint32_t boundary) const;
 
-    /// Adds the mesh of a boundary. check_mesh() must not find a fault.
+    /// Adds the mesh of a boundary, whose number is higher than those of the others. check_mesh() must not
+    /// find a fault.
     void add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_sided);
 
     MeshView view() const

@@ -45,6 +45,18 @@ bool lists(const BoundaryBlockView& view, std::uint32_t block, std::uint32_t bou
                               boundary);
 }
 
+/// A random point in a random cell, and the block of the cell
+std::pair<Vec3, std::uint32_t> random_place(granular::Random& random, const CellGrid& g, double width,
+                                            const BoundaryBlockView& view)
+{
+    std::int32_t at[3];
+    for (int k = 0; k < 3; ++k)
+        at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
+    const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
+    const Vec3 point{inside(0), inside(1), inside(2)};
+    return {point, view.block(at[0], at[1], at[2])};
+}
+
 }  // namespace
 
 TEST_CASE("the blocks of cells list all boundaries within reach and few others", "[granular][neighbours]")
@@ -63,12 +75,7 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
     const BoundaryBlockView view = blocks.view();
     long missing = 0, listed = 0, far = 0;
     for (int n = 0; n < 4000; ++n) {
-        std::int32_t at[3];
-        for (int k = 0; k < 3; ++k)
-            at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
-        const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
-        const Vec3 point{inside(0), inside(1), inside(2)};
-        const std::uint32_t block = view.block(at[0], at[1], at[2]);
+        const auto [point, block] = random_place(random, g, width, view);
         for (std::uint32_t b = 0; b < all.size(); ++b) {
             const double distance = nearest(all[b], point).distance;
             const bool is_listed = lists(view, block, b);
@@ -105,12 +112,7 @@ TEST_CASE("the blocks of cells list all triangles within reach and few others", 
     const auto triangles = static_cast<std::uint32_t>(meshes.triangle.size());
     long missing = 0, listed = 0, far = 0, near = 0;
     for (int n = 0; n < 3000; ++n) {
-        std::int32_t at[3];
-        for (int k = 0; k < 3; ++k)
-            at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
-        const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
-        const Vec3 point{inside(0), inside(1), inside(2)};
-        const std::uint32_t block = view.block(at[0], at[1], at[2]);
+        const auto [point, block] = random_place(random, g, width, view);
         for (std::uint32_t t = 0; t < triangles; ++t) {
             const std::uint32_t surface = granular::Surfaces::first_triangle + t;
             const double distance = (point - surfaces.closest_point(surface, point)).norm();

@@ -44,6 +44,15 @@ double least_distance(const Meshes& meshes, const Vec3& p)
     return least;
 }
 
+/// There is one minimum within reach, and it is the closest point.
+void check_closest_point(const Meshes& meshes, const Vec3& p, double reach)
+{
+    const std::vector<Nearest> found = minima(meshes, p, reach);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].distance == Approx(least_distance(meshes, p)).epsilon(1e-12));
+    CHECK(least_distance(meshes, p - found[0].distance * found[0].n) < 1e-14);
+}
+
 TriangleMesh turned(TriangleMesh mesh, const granular::EulerParameters<double>& p)
 {
     for (Vec3& v : mesh.vertex) v = rotated(p, v);
@@ -112,10 +121,7 @@ TEST_CASE("outside of a sphere of triangles a grain has one contact, the closest
     const double R = 0.3;
     for (int k = 0; k < 1000; ++k) {
         const Vec3 p = random.number(1.001, 1.25) * random.direction();
-        const std::vector<Nearest> found = minima(meshes, p, R);
-        REQUIRE(found.size() == 1);
-        CHECK(found[0].distance == Approx(least_distance(meshes, p)).epsilon(1e-12));
-        CHECK(least_distance(meshes, p - found[0].distance * found[0].n) < 1e-14);
+        check_closest_point(meshes, p, R);
     }
     for (const Vec3& v : meshes.vertex) {  // above vertices and edges
         REQUIRE(minima(meshes, 1.1 * v, R).size() == 1);
@@ -194,9 +200,7 @@ TEST_CASE("inside of a sphere of triangles a grain has one contact, with the clo
     const double R = 0.15;
     for (int k = 0; k < 2000; ++k) {
         const Vec3 p = random.number(0.87, 0.97) * random.direction();
-        const std::vector<Nearest> found = minima(meshes, p, R);
-        REQUIRE(found.size() == 1);
-        CHECK(found[0].distance == Approx(least_distance(meshes, p)).epsilon(1e-12));
+        check_closest_point(meshes, p, R);
     }
 }
 

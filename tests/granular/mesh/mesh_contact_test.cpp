@@ -253,3 +253,14 @@ TEST_CASE("a world with a mesh has the same bits for any number of threads and a
     omp_set_num_threads(1);
     CHECK(restored.to_bytes("run") == expected);
 }
+
+TEST_CASE("a mesh is added with its triangles", "[granular][mesh]")
+{
+    World world = empty_world();
+    CHECK_THROWS_WITH(world.add(mesh_boundary()),
+                      "boundary: a mesh must be added with its triangles, got none");
+    CHECK_THROWS_WITH(world.add(Boundary{}, granular::plate_mesh(1, 1, 0)),
+                      "boundary 0: the shape of a boundary with triangles must be a mesh, got 0");
+    CHECK_THROWS_WITH(world.add(mesh_boundary(), {}), "boundary 0: a mesh must have a triangle, got none");
+    CHECK(world.all_boundaries().empty());
+}

@@ -35,8 +35,15 @@ struct BoundaryType {
     std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);
 };
 
-/// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free and F.
-void read_body(ObjectReader& o, NamedBoundary& body);
+/// A homogeneous body
+struct SolidBody {
+    double mass;  ///< [kg]
+    Inertia inertia;
+};
+
+/// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free, F and T. `solid` replaces
+/// the mass, and the inertia if there is no such key.
+void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBody>& solid = {});
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.

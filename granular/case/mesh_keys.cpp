@@ -109,14 +109,51 @@ TriangleMesh read_triangles(ObjectReader& o)
     }
 }
 
+/// The solid of this density inside the mesh. Sets its centre of mass.
+SolidBody read_solid(ObjectReader& o, const TriangleMesh& mesh, Vec3& centre)
+{
+    const double density = o.positive("density");
+    if (const std::size_t open = open_edges(mesh); open > 0)
+        o.fail("density",
+               "density needs a closed mesh, got one with " + std::to_string(open) + " open edges");
+    const MassProperties p = mass_properties(mesh);
+    if (!(p.volume > 0))
+        o.fail("density", "density needs a mesh with normals out of a solid, got one that encloses " +
+                              io::shortest(p.volume) + " m^3");
+    centre = p.centre;
+    std::array<double, 6> J = p.J;
+    for (double& x : J) x *= density;
+    return {density * p.volume, Inertia(J)};
+}
+
+/// Makes the centre of mass the origin of the mesh and the place of the boundary.
+void set_centre(NamedBoundary& b, const Vec3& centre)
+{
+    for (Vec3& v : b.mesh->vertex) v = v - centre;
+    const Vec3 d = rotated(b.boundary.p, centre);
+    b.boundary.r += d;
+    if (!b.motion.r) return;
+    const double from[] = {d.x, d.y, d.z};
+    for (std::size_t k = 0; k < 3; ++k)
+        b.motion.r->of[k] = [f = b.motion.r->of[k], c = from[k]](double t) { return c + f(t); };
+}
+
 std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
 {
-    read_body(o, b);
     b.boundary.shape = Boundary::Shape::mesh;
     b.mesh = read_triangles(o);
     b.two_sided = o.flag("two_sided", false);
     b.boundary.p = turned({1, {0, 0, 0}}, o.vec3("rotation", Vec3{0, 0, 0}));
     o.located([&] { check_mesh(*b.mesh, b.name); });
+    std::optional<SolidBody> solid;
+    Vec3 centre{0, 0, 0};
+    if (o.has("density")) {
+        if (o.has("mass")) o.fail("density", "density must not be given together with mass");
+        solid = read_solid(o, *b.mesh, centre);
+    }
+    read_body(o, b, solid);
+    if (b.boundary.mass > 0) centre = o.vec3("centre", centre);
+    if (centre != Vec3{0, 0, 0}) set_centre(b, centre);
     return {b};
 }
 
@@ -200,7 +237,19 @@ const bool registered = io::Registry<BoundaryType>::add(
            {"rotation",
             "Rotation of the mesh about r at the start, a rotation vector in the global frame [rad].",
             R"("$ref": "#/$defs/vector", "default": [0, 0, 0], "examples": [[0, 0, 0.5]])"},
-           {"r", "The origin of the mesh [m], in the global frame; numbers or formulas in t.",
+           {"density",
+            "Density of the solid inside a closed mesh, instead of mass [kg/m^3]. Mass, centre of mass and "
+            "inertia are those of the solid; inertia and centre replace the last two.",
+            R"("$ref": "#/$defs/positive", "examples": [7800])"},
+           {"centre",
+            "Centre of mass of a mesh with a mass [m], in the frame of the mesh. The default is the origin, "
+            "or "
+            "with density the centre of the solid. Position and loads in the output refer to it.",
+            R"("$ref": "#/$defs/vector", "examples": [[0, 0, 0.02]])"},
+           {"r",
+            "The origin of the mesh [m], in the global frame; numbers or formulas in t. The formulas give "
+            "the "
+            "displacement of the centre of mass.",
             R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"}},
       .example = R"json("name": "hopper", "lathe": {"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]]})json"},
      read});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/motion.hpp"
 
+#include "granular/core/rigid_body.hpp"
+
 #include <cmath>
 #include <cstdio>
 
@@ -26,6 +28,7 @@ Vec3 value(const BoundaryMotion& m, const char* of, const VectorFormula& f, doub
 void apply_motions(World& world, const std::vector<BoundaryMotion>& motions, double h)
 {
     const double t = world.t(), middle = t + h / 2;
+    const double of_loads = world.scheme() == Scheme::velocity_verlet ? middle : t;
     for (const BoundaryMotion& m : motions) {
         Boundary& b = world.boundary(m.boundary);
         Vec3 v = b.v;
@@ -33,8 +36,9 @@ void apply_motions(World& world, const std::vector<BoundaryMotion>& motions, dou
         if (m.v) v = value(m, "v", *m.v, middle);
         const auto prescribed = [&](int axis) { return !(b.mass > 0 && b.free[axis]); };
         b.v = {prescribed(0) ? v.x : b.v.x, prescribed(1) ? v.y : b.v.y, prescribed(2) ? v.z : b.v.z};
-        if (m.omega) b.omega = value(m, "omega", *m.omega, middle);
-        if (m.F) b.F = value(m, "F", *m.F, t);
+        if (m.omega) prescribe_omega(b, value(m, "omega", *m.omega, middle));
+        if (m.F) b.F = value(m, "F", *m.F, of_loads);
+        if (m.T) b.T = value(m, "T", *m.T, of_loads);
     }
 }
 

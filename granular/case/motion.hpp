@@ -21,15 +21,16 @@ struct VectorFormula {
 ///
 ///     r given:     v = (r(t + h) - r)/h, so that the position after the step is exact
 ///     v, ω given:  values at t + h/2, so that the position is accurate to second order
-///     F given:     value at t
+///     F, T given:  values at t; at t + h/2 with velocity Verlet, which keeps its order
 ///
-/// The velocity of a boundary with a mass is not prescribed along its free axes.
+/// The velocity of a boundary with a mass is not prescribed along its free axes, nor its angular velocity
+/// about them.
 struct BoundaryMotion {
     int boundary = 0;
     std::string name;
-    std::optional<VectorFormula> r, v, omega, F;
+    std::optional<VectorFormula> r, v, omega, F, T;
 
-    bool is_prescribed() const { return r || v || omega || F; }
+    bool is_prescribed() const { return r || v || omega || F || T; }
 };
 
 /// The value of a formula is not finite. what() states the boundary, the key and the time.

@@ -45,21 +45,42 @@ std::array<bool, 6> ObjectReader::sides(std::string_view key)
     return listed;
 }
 
+namespace {
+
+/// The values of a list of `count` (words: "3", "3 or 6") flags
+std::vector<bool> flag_list(const ObjectReader& o, std::string_view key, const io::Json& v,
+                            const std::string& count, bool is_count)
+{
+    if (!is_count)
+        o.fail(key, std::string(key) + " must be a list of " + count + " values, each true or false, got " +
+                        io::described(v));
+    std::vector<bool> x;
+    for (const io::Json& value : *v.list()) {
+        if (value.boolean() == nullptr)
+            o.fail(key, x.size(), std::string(key) + " must be true or false, got " + io::described(value));
+        x.push_back(*value.boolean());
+    }
+    return x;
+}
+
+}  // namespace
+
 std::array<bool, 3> ObjectReader::flags(std::string_view key, const std::array<bool, 3>& fallback)
 {
     const io::Json* v = find(key);
     if (v == nullptr) return fallback;
-    if (v->list() == nullptr || v->size() != 3)
-        fail(key,
-             std::string(key) + " must be a list of 3 values, each true or false, got " + io::described(*v));
-    const io::Json::List& all = *v->list();
-    std::array<bool, 3> x{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (all[k].boolean() == nullptr)
-            fail(key, k, std::string(key) + " must be true or false, got " + io::described(all[k]));
-        x[k] = *all[k].boolean();
-    }
-    return x;
+    const auto x = flag_list(*this, key, *v, "3", v->list() != nullptr && v->size() == 3);
+    return {x[0], x[1], x[2]};
+}
+
+std::array<bool, 6> ObjectReader::six_flags(std::string_view key, bool others)
+{
+    const io::Json* v = find(key);
+    if (v == nullptr) return {true, true, true, others, others, others};
+    const auto x =
+        flag_list(*this, key, *v, "3 or 6", v->list() != nullptr && (v->size() == 3 || v->size() == 6));
+    if (x.size() == 3) return {x[0], x[1], x[2], others, others, others};
+    return {x[0], x[1], x[2], x[3], x[4], x[5]};
 }
 
 bool ObjectReader::has_formula(std::string_view key)

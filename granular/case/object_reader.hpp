@@ -19,6 +19,8 @@ public:
     Vec3 vec3(std::string_view key, const std::optional<Vec3>& fallback = {});
     Vec3 direction(std::string_view key);  ///< three numbers, not all zero, divided by their length
     std::array<bool, 3> flags(std::string_view key, const std::array<bool, 3>& fallback);
+    /// Three or six values, each true or false. The last three are `others` if three are given.
+    std::array<bool, 6> six_flags(std::string_view key, bool others);
     /// The sides of a box that the list names: -x, +x, -y, +y, -z, +z. Empty if the key is missing.
     std::array<bool, 6> sides(std::string_view key);
     static constexpr std::array<const char*, 6> side_names = {"-x", "+x", "-y", "+y", "-z", "+z"};

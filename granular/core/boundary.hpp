@@ -6,6 +6,7 @@
 
 #include "granular/core/orientation.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -13,10 +14,30 @@ namespace hilda::granular {
 
 using Vec3 = Vec<double>;
 
+/// Moments and products of inertia about the centre of mass, in the body frame [kg m²]
+struct Inertia {
+    double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;
+
+    Inertia() = default;
+    /// The same moment of inertia about every axis
+    Inertia(double same) : xx(same), yy(same), zz(same) {}
+    Inertia(const std::array<double, 6>& J) : xx(J[0]), yy(J[1]), zz(J[2]), xy(J[3]), yz(J[4]), zx(J[5]) {}
+
+    bool is_zero() const { return *this == Inertia{}; }
+    /// J̄ a
+    HILDA_HD Vec3 operator*(const Vec3& a) const
+    {
+        return {xx * a.x + xy * a.y + zx * a.z, xy * a.x + yy * a.y + yz * a.z,
+                zx * a.x + yz * a.y + zz * a.z};
+    }
+    bool operator==(const Inertia&) const = default;
+};
+
 /// A boundary surface in rigid motion. Vectors are in the global frame.
 ///
 /// With mass = 0 the motion is prescribed by v and omega. With mass > 0 the boundary is a rigid body boundary
-/// (tool): it moves under its contact loads, gravity and the external force F.
+/// (tool): it moves under its contact loads, gravity, the external force F and the external torque T. Its
+/// centre of mass is r. See rigid_body.hpp for the equations of motion.
 struct Boundary {
     enum class Shape : std::int32_t {
         plane,     ///< plane through r; its normal `axis` points to the particles
@@ -30,17 +51,27 @@ struct Boundary {
     Vec3 axis = {0, 0, 1};        ///< unit vector
     double radius = 0;            ///< of a cylinder or sphere [m]
     double cosine = 1, sine = 0;  ///< of the half angle of a cone
-    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};       ///< velocity of r [m/s], angular velocity [rad/s]
-    EulerParameters<double> p = {1, {0, 0, 0}};  ///< orientation of a mesh about r
+    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< velocity of r [m/s], angular velocity [rad/s]
+    /// Orientation of a mesh, and of the body frame of the inertia
+    EulerParameters<double> p = {1, {0, 0, 0}};
     std::int32_t material = 0;
 
     // members of a rigid body boundary
-    std::array<bool, 3> free = {true, true, true};  ///< whether it may translate along x, y, z
-    bool unused = false;  ///< explicit padding, because the bytes of boundaries are compared and stored
-    double mass = 0;      ///< [kg]; 0: prescribed motion
-    double inertia = 0;   ///< isotropic moment of inertia about r [kg m²]; 0: omega does not change
-    Vec3 F = {0, 0, 0};   ///< external force [N]
+    /// Whether it may translate along x, y, z and rotate about x, y, z. The velocities of the other freedoms
+    /// are prescribed.
+    std::array<bool, 6> free = {true, true, true, true, true, true};
+    std::array<bool, 6> unused{};  ///< explicit padding: the bytes of boundaries are compared and stored
+    double mass = 0;               ///< [kg]; 0: prescribed motion
+    Inertia inertia = {};          ///< about r; zero: omega is prescribed
+    Vec3 F = {0, 0, 0};            ///< external force [N]
+    Vec3 T = {0, 0, 0};            ///< external torque about r [N m]
 
+    /// Whether loads change omega
+    bool rotates_freely() const
+    {
+        return mass > 0 && !inertia.is_zero() &&
+               std::any_of(free.begin() + 3, free.end(), [](bool f) { return f; });
+    }
     /// [1/kg]; 0 for prescribed motion
     HILDA_HD float inverse_mass() const { return mass > 0 ? static_cast<float>(1 / mass) : 0; }
 };

@@ -25,9 +25,14 @@ private:
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
         for (const std::string& b : c.boundaries)
             for (const char* of : {"_Fx", "_Fy", "_Fz", "_Tx", "_Ty", "_Tz"}) names += ',' + b + of;
-        for (const int b : c.moving)
-            for (const char* of : {"_x", "_y", "_z", "_vx", "_vy", "_vz", "_wx", "_wy", "_wz"})
-                names += ',' + c.boundaries[static_cast<std::size_t>(b)] + of;
+        for (const int b : c.moving) {
+            const auto add = [&](std::initializer_list<const char*> columns) {
+                for (const char* of : columns) names += ',' + c.boundaries[static_cast<std::size_t>(b)] + of;
+            };
+            add({"_x", "_y", "_z", "_vx", "_vy", "_vz", "_wx", "_wy", "_wz"});
+            if (has_orientation(c.world->all_boundaries()[static_cast<std::size_t>(b)]))
+                add({"_e0", "_e1", "_e2", "_e3"});
+        }
         return names + '\n';
     }
 
@@ -45,9 +50,15 @@ private:
         for (const int b : c.moving) {
             const Boundary& moving = w.all_boundaries()[static_cast<std::size_t>(b)];
             append(text, moving.r), append(text, moving.v), append(text, moving.omega);
+            if (!has_orientation(moving)) continue;
+            text += io::formatted(",%.9g", moving.p.e0);
+            append(text, moving.p.e);
         }
         text += '\n';
     }
+
+    /// Whether Euler parameters are integrated for a moving boundary
+    static bool has_orientation(const Boundary& b) { return b.shape == Boundary::Shape::mesh || b.mass > 0; }
 
     static void append(std::string& text, const Vec3& a)
     {

@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 12};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 13};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>
@@ -125,14 +125,14 @@ bool valid_attached(const std::vector<AttachedParticle>& all, std::uint32_t ids,
            });
 }
 
-/// All members are equal except those that change during a run: r, axis, p, v, omega and F, which are
+/// All members are equal except those that change during a run: r, axis, p, v, omega, F and T, which are
 /// finite.
 bool same_boundary(const Boundary& now, Boundary saved)
 {
-    for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F})
+    for (const Vec3& v : {saved.r, saved.axis, saved.v, saved.omega, saved.F, saved.T})
         if (!finite(v)) return false;
     saved.r = now.r, saved.axis = now.axis, saved.p = now.p, saved.v = now.v, saved.omega = now.omega,
-    saved.F = now.F;
+    saved.F = now.F, saved.T = now.T;
     // There is no padding, and -0 or NaN in place of a number is another boundary.
     return std::memcmp(&now, &saved, sizeof saved) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
 }
@@ -155,7 +155,7 @@ std::string changes(const Boundary& now, const Boundary& saved)
         all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + value;
     };
     for (const auto& [name, v] :
-         {std::pair{"r", saved.r}, {"v", saved.v}, {"omega", saved.omega}, {"F", saved.F}})
+         {std::pair{"r", saved.r}, {"v", saved.v}, {"omega", saved.omega}, {"F", saved.F}, {"T", saved.T}})
         if (!finite(v)) add(name, shown(v));
     if (!(std::abs(saved.axis.norm() - 1) < 1e-6)) add("axis", shown(saved.axis));
     const double p2 = saved.p.e0 * saved.p.e0 + saved.p.e.dot(saved.p.e);
@@ -163,7 +163,9 @@ std::string changes(const Boundary& now, const Boundary& saved)
     for (const auto& [name, before, after] :
          {std::tuple{"radius", now.radius, saved.radius},
           {"mass", now.mass, saved.mass},
-          {"inertia", now.inertia, saved.inertia},
+          {"moment of inertia xx", now.inertia.xx, saved.inertia.xx},
+          {"moment of inertia yy", now.inertia.yy, saved.inertia.yy},
+          {"moment of inertia zz", now.inertia.zz, saved.inertia.zz},
           {"cosine", now.cosine, saved.cosine},
           {"sine", now.sine, saved.sine},
           {"material", double(now.material), double(saved.material)},
@@ -297,6 +299,12 @@ void World::transfer(io::Archive& a)
         boundaries, "a boundary must be that of the case, with a finite place, velocity and load",
         [&](const Boundary& b) { return same_boundary(counterpart(b), b) && valid_place(b); },
         [&](const Boundary& b) { return changes(counterpart(b), b); });
+    a.list(tool_loads);
+    a.check(tool_loads.empty() || tool_loads.size() == boundaries.size(),
+            "wrong number of loads of boundaries, got " + std::to_string(tool_loads.size()));
+    a.check_each(
+        tool_loads, "invalid load of a boundary", [](const Wrench& w) { return finite(w.F) && finite(w.T); },
+        [](const Wrench& w) { return shown(w.F) + ", " + shown(w.T); });
     a.list(forces);
     check_vectors(a, forces, "a force");
     a.check(forces.empty() || forces.size() == next_id,

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/core/boundary.hpp"
 #include "granular/core/particles.hpp"
 #include "io/json.hpp"
 
@@ -18,6 +19,12 @@ inline std::string shown(const Vec<double>& v)
 inline std::string shown(const Float4& a)
 {
     return '(' + shown(a.x) + ", " + shown(a.y) + ", " + shown(a.z) + ", " + shown(a.w) + ')';
+}
+/// The matrix by rows
+inline std::string shown(const Inertia& J)
+{
+    return '(' + shown(Vec3{J.xx, J.xy, J.zx}) + ", " + shown(Vec3{J.xy, J.yy, J.yz}) + ", " +
+           shown(Vec3{J.zx, J.yz, J.zz}) + ')';
 }
 
 }  // namespace hilda::granular::detail

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/split_mix.hpp"
+#include "granular/core/rigid_body.hpp"
+#include "granular/world/value_text.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -80,17 +82,20 @@ int World::add_boundary(const Boundary& b)
 {
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
-    if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F))
-        refuse("boundary", "position, velocities and force must be finite",
-               not_finite({b.r, b.v, b.omega, b.F}));
+    if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F) || !finite(b.T))
+        refuse("boundary", "position, velocities, force and torque must be finite",
+               not_finite({b.r, b.v, b.omega, b.F, b.T}));
     const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
     if (round && !(b.radius > 0 && std::isfinite(b.radius)))
         refuse("boundary", "the radius must be positive", b.radius);
     if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
         refuse("boundary", "the length of axis must be 1", b.axis.norm());
-    if (!(b.mass >= 0) || !(b.inertia >= 0) || !std::isfinite(b.mass + b.inertia))
-        refuse("boundary", "mass and inertia must not be negative",
-               b.mass >= 0 && std::isfinite(b.mass) ? b.inertia : b.mass);
+    if (!(b.mass >= 0) || !std::isfinite(b.mass)) refuse("boundary", "the mass must be finite and not negative", b.mass);
+    if (!b.inertia.is_zero() && !is_inertia(b.inertia))
+        refuse(
+            "boundary",
+            "the principal moments of inertia must be positive, and none larger than the sum of the others",
+            shown(b.inertia));
     if (boundaries.size() >= Surfaces::first_triangle)
         refuse("boundaries", "there are too many", boundaries.size() + 1);
     boundaries.push_back(b);
@@ -248,64 +253,6 @@ void World::send_boundaries() const
     if (engine->set_boundaries(boundaries)) boundaries_changed = true;
 }
 
-/// Integrates the velocities of tools by symplectic Euler. A tool is a boundary with a mass m and a moment of
-/// inertia I.
-///
-///     v += h ((F_contact + F)/m + g) along the free axes,    ω += h T/I
-void World::accelerate_tools()
-{
-    if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
-        return;
-    const std::vector<Wrench>& load = engine->free_boundary_wrenches(domain);
-    for (std::size_t k = 0; k < boundaries.size(); ++k) {
-        Boundary& b = boundaries[k];
-        if (!(b.mass > 0)) continue;
-        const Vec3 a = (1 / b.mass) * (load[k].F + b.F) + options.gravity;
-        b.v += options.h * Vec3{b.free[0] ? a.x : 0, b.free[1] ? a.y : 0, b.free[2] ? a.z : 0};
-        if (b.inertia > 0) b.omega += (options.h / b.inertia) * load[k].T;
-    }
-}
-
-/// Moves the boundaries by h v and rotates their axes by h ω (Rodrigues' formula). Returns an upper bound of
-/// the displacement of the boundary points within the domain [m].
-double World::move_boundaries()
-{
-    if (boundaries_rest && !boundaries_changed) return 0;
-    boundaries_rest = true;
-    rotate_frames();
-    const double h = options.h;
-    double largest = 0;
-    moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
-    for (std::size_t k = 0; k < boundaries.size(); ++k) {
-        Boundary& b = boundaries[k];
-        moved[k] = {b.v, b.omega};
-        boundaries_rest = boundaries_rest && b.v == Vec3{0, 0, 0} && b.omega == Vec3{0, 0, 0} && b.mass == 0;
-        b.r += h * b.v;
-        double displacement = h * b.v.norm();
-        const double angle = h * b.omega.norm();
-        if (b.shape == Boundary::Shape::mesh) {
-            if (angle > 0) b.p = turned(b.p, h * b.omega);
-            if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(k)))
-                // also of the centres of particles in contact
-                displacement += angle * (part->radius + double{domain.largest} + domain.skin);
-        } else if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
-            const Vec3 e = (h / angle) * b.omega;
-            const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
-                                   ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
-            b.axis = (1 / direction.norm()) * direction;
-            // distance from r to the farthest corner of the domain
-            const Vec3 a = options.low - b.r, c = options.high - b.r;
-            displacement +=
-                angle * Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
-                             std::max(std::abs(a.z), std::abs(c.z))}
-                            .norm();
-        }
-        largest = std::max(largest, displacement);
-        moved_to[k] = BoundaryPlace(b);
-    }
-    return largest;
-}
-
 void World::before_each_step(std::function<void(World&)> f) { callbacks.push_back(std::move(f)); }
 
 void World::step(long n)
@@ -366,19 +313,24 @@ void World::one_step()
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads(true);
         engine->advance(step_parameters(Part::only_loads));
+        if (verlet) find_tool_loads();
     }
     if (verlet) {
+        accelerate_tools(0.5);
+        send_boundaries();
         particle_displacement += advance(Part::before_loads);
         boundary_displacement += move_boundaries();
         if (!is_posed()) move_attached();
         find_loads(false);
-        accelerate_tools();
+        find_tool_loads();
+        accelerate_tools(0.5);
         watch_loads();
         advance(Part::after_loads);
         watch_advance();
     } else {
         if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads(false);
-        accelerate_tools();
+        find_tool_loads();
+        accelerate_tools(1);
         watch_loads();
         particle_displacement += advance(Part::whole);
         watch_advance();

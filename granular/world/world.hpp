@@ -210,8 +210,9 @@ public:
     /// boundaries and applied forces, and add particles. It must not register further callbacks. Callbacks
     /// are called in the order of registration. They are not part of a checkpoint.
     void before_each_step(std::function<void(World&)> f);
-    /// Access to a boundary, to prescribe v, omega and F. A boundary with a mass is accelerated by the
-    /// contact forces. The number is not checked.
+    Scheme scheme() const { return options.scheme; }
+    /// Access to a boundary, to prescribe v, omega, F and T. A boundary with a mass is accelerated by the
+    /// contact loads along its free axes. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     const std::vector<Boundary>& all_boundaries() const { return boundaries; }
     const Meshes& all_meshes() const { return meshes; }
@@ -351,7 +352,9 @@ private:
     [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();
-    void accelerate_tools();
+    void find_tool_loads();
+    void accelerate_tools(double part);
+    Vec3 mean_omega_of(std::size_t boundary) const;
     StepParameters step_parameters(Part part) const;
     bool laws_have_energy() const;
     bool boundaries_move();
@@ -373,9 +376,10 @@ private:
     std::vector<PairLaw> laws;
     std::vector<std::uint8_t> law_of;  ///< index into laws, or no_law: materials × materials
     std::vector<Boundary> boundaries;
-    Meshes meshes;                  ///< of the boundaries with Shape::mesh
-    std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
-    std::vector<Particle> pending;  ///< particles added since the last insertion
+    Meshes meshes;                   ///< of the boundaries with Shape::mesh
+    std::vector<Wrench> tool_loads;  ///< contact loads on the boundaries with a mass, at t_n
+    std::vector<Float4> forces;      ///< applied forces, by id [N]; empty if none is set
+    std::vector<Particle> pending;   ///< particles added since the last insertion
     std::vector<std::function<void(World&)>> callbacks;
 
     std::unique_ptr<Engine> engine;

@@ -27,11 +27,11 @@ int World::boundary_of(std::uint32_t id) const
     return at != attached.end() && at->id == id ? static_cast<int>(at->boundary) : -1;
 }
 
-/// Rotates the frames of the boundaries by h ω. Called with the velocities of the move.
+/// Rotates the frames of the boundaries by h ω with the velocities of the move.
 void World::rotate_frames()
 {
     for (std::size_t b = 0; b < rotations.size(); ++b)
-        rotations[b] = turned(rotations[b], options.h * boundaries[b].omega);
+        rotations[b] = turned(rotations[b], options.h * moved[b].omega);
 }
 
 /// Passes the list of the attached particles to the engine.

@@ -63,8 +63,8 @@ void World::check_finite() const
                          shown(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
     check_histories();
     for (std::size_t b = 0; b < boundaries.size(); ++b)
-        for (const Vec3& v :
-             {boundaries[b].r, boundaries[b].axis, boundaries[b].v, boundaries[b].omega, boundaries[b].F})
+        for (const Vec3& v : {boundaries[b].r, boundaries[b].axis, boundaries[b].v, boundaries[b].omega,
+                              boundaries[b].F, boundaries[b].T})
             if (!granular::finite(v))
                 refuse_state("boundary " + std::to_string(b) + ": its place, velocity or load", time,
                              shown(v));

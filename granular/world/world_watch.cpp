@@ -63,7 +63,7 @@ bool World::boundaries_move()
     for (std::size_t k = 0; k < boundaries.size(); ++k)
         next_move[k] = options.scheme == Scheme::velocity_verlet
                            ? moved[k]
-                           : BoundaryVelocity{boundaries[k].v, boundaries[k].omega};
+                           : BoundaryVelocity{boundaries[k].v, mean_omega_of(k)};
     return true;
 }
 

@@ -102,6 +102,51 @@ TEST_CASE("wrong meshes of a case file are refused with their place", "[granular
     }
 }
 
+TEST_CASE("density gives a mesh the mass, the centre and the inertia of its solid",
+          "[granular][mesh][tool][case]")
+{
+    const std::string box = R"("box": {"low": [0, 0, 0], "high": [0.2, 0.4, 0.6], "inside": false})";
+    const granular::Case c = read(box + R"(, "density": 1000, "r": ["0.1*t", 0.05, 0],
+                                  "rotation": [0, 0, 1.5707963267948966])");
+    const granular::Boundary& b = c.world->all_boundaries()[0];
+    const double m = 48;
+    CHECK(b.mass == Approx(m));
+    CHECK(b.inertia.xx == Approx(m / 12 * (0.16 + 0.36)));
+    CHECK(b.inertia.yy == Approx(m / 12 * (0.04 + 0.36)));
+    CHECK(b.inertia.zz == Approx(m / 12 * (0.04 + 0.16)));
+    CHECK(std::abs(b.inertia.xy) + std::abs(b.inertia.yz) + std::abs(b.inertia.zx) < 1e-15);
+    // the corner is at r, the box turned by 90 degrees about z
+    CHECK((b.r - granular::Vec3{-0.2, 0.15, 0.3}).norm() < 1e-15);
+    CHECK((c.world->all_meshes().vertex[0].norm() == Approx(std::sqrt(0.01 + 0.04 + 0.09))));
+
+    const granular::Case given =
+        read(box + R"(, "mass": 2, "centre": [0.1, 0.1, 0.1], "inertia": [[2, 0.1, 0],
+        [0.1, 3, 0.2], [0, 0.2, 2.5]], "free": [true, false, true, false, true, false], "omega": ["t", 0, 0])");
+    const granular::Boundary& g = given.world->all_boundaries()[0];
+    CHECK(g.inertia.xy == 0.1);
+    CHECK(g.inertia.yz == 0.2);
+    CHECK(g.inertia.zx == 0);
+    CHECK(g.free == std::array{true, false, true, false, true, false});
+    CHECK(g.r.z == 0.1);
+
+    const auto contains = [&](const std::string& members, const std::string& part) {
+        const std::string error = error_of(members);
+        INFO(members << "\n" << error);
+        CHECK(error.find(part) != std::string::npos);
+    };
+    contains(box + R"(, "density": 1000, "mass": 1)", "density must not be given together with mass");
+    contains(R"("box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "density": 1000)",
+             "density needs a mesh with normals out of a solid, got one that encloses -1 m^3");
+    contains(R"("plate": {"width_x": 1, "width_y": 1}, "density": 1000)",
+             "density needs a closed mesh, got one with 4 open edges");
+    contains(box + R"(, "centre": [0, 0, 0.1])", "unknown key \"centre\"");
+    contains(box + R"(, "density": 1000, "inertia": [1, 1, 3])",
+             "(/boundaries/0/inertia): the principal moments of inertia must be positive");
+    contains(box + R"(, "density": 1000, "free": [true, true])", "free must be a list of 3 or 6 values");
+    contains(box + R"(, "density": 1000, "omega": [0, "t", 0])",
+             "omega must be three numbers if the boundary rotates freely about all axes");
+}
+
 TEST_CASE("a mesh that reaches a periodic side gives a warning", "[granular][mesh][case]")
 {
     const std::string plate = R"("plate": {"width_x": 2, "width_y": 2})";

@@ -85,7 +85,7 @@ TEST_CASE("a world refuses wrong boundaries, laws and velocities", "[granular][r
     CHECK(boundary({.material = -1}) == "boundary: no material has this number, got -1");
     const auto not_finite = [&](const Boundary& b) {
         const std::string text = boundary(b),
-                          expected = "boundary: position, velocities and force must be finite, got ";
+                          expected = "boundary: position, velocities, force and torque must be finite, got ";
         return text.starts_with(expected) ? text.substr(expected.size()) : text;
     };
     CHECK(not_finite({.r = {none, 0, 0}}) == "nan");
@@ -99,11 +99,19 @@ TEST_CASE("a world refuses wrong boundaries, laws and velocities", "[granular][r
     }
     CHECK(boundary({.shape = Shape::cone, .axis = {0, 3, 0}}) ==
           "boundary: the length of axis must be 1, got 3");
-    CHECK(boundary({.mass = -2}) == "boundary: mass and inertia must not be negative, got -2");
-    CHECK(boundary({.mass = 2, .inertia = -3}) == "boundary: mass and inertia must not be negative, got -3");
-    CHECK(boundary({.mass = infinite}) == "boundary: mass and inertia must not be negative, got inf");
-    CHECK(boundary({.mass = 1, .inertia = infinite}) ==
-          "boundary: mass and inertia must not be negative, got inf");
+    CHECK(boundary({.mass = -2}) == "boundary: the mass must be finite and not negative, got -2");
+    const std::string moments =
+        "boundary: the principal moments of inertia must be positive, and none larger than the sum of the "
+        "others, got ";
+    CHECK(boundary({.mass = 2, .inertia = -3}) == moments + "((-3, 0, 0), (0, -3, 0), (0, 0, -3))");
+    const std::array<double, 6> rod = {2, 2, 0, 0, 0, 0}, long_rod = {1, 1, 2.1, 0, 0, 0},
+                                full = {2, 2, 2, 3, 0, 0}, disk = {1, 1, 2, 0, 0, 0};
+    CHECK(boundary({.mass = 2, .inertia = rod}) == moments + "((2, 0, 0), (0, 2, 0), (0, 0, 0))");
+    CHECK(boundary({.mass = 2, .inertia = long_rod}) == moments + "((1, 0, 0), (0, 1, 0), (0, 0, 2.1))");
+    CHECK(boundary({.mass = 2, .inertia = full}) == moments + "((2, 3, 0), (3, 2, 0), (0, 0, 2))");
+    CHECK_NOTHROW(world.add({.mass = 2, .inertia = disk}));
+    CHECK(boundary({.mass = infinite}) == "boundary: the mass must be finite and not negative, got inf");
+    CHECK(boundary({.mass = 1, .inertia = infinite}) == moments + "((inf, 0, 0), (0, inf, 0), (0, 0, inf))");
 
     world.add(Particle{.r = {0.5, 0.5, 0.5}, .radius = 0.01});
     CHECK(refusal([&] { world.set_velocity(1, {}, {}); }) == "velocity: no particle has this id, got 1");

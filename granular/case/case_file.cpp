@@ -4,6 +4,7 @@
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/continued_case.hpp"
 #include "granular/case/fill.hpp"
+#include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
 #include "io/error.hpp"
 
@@ -119,10 +120,14 @@ public:
         for (ObjectReader& b : o.objects("boundaries")) boundary(b);
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
+        out.fields = read_fields(o, world);
         o.finish();
         check_mesh_sizes();
+        check_widths();
+        Environment available = environment;
+        available.lists_contacts = environment.lists_contacts || !out.fields.empty();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
-                     fills, environment);
+                     fills, available);
         double all = 0;
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));
@@ -191,12 +196,26 @@ private:
         o.finish();
     }
 
+    double largest_diameter() const  ///< of the particles [m]
+    {
+        double diameter = largest;
+        for (const FillSpec& f : fills) diameter = std::max(diameter, 2 * f.radius);
+        return diameter;
+    }
+
+    void check_widths()
+    {
+        for (std::size_t k = 0; k < out.fields.size(); ++k)
+            if (const std::string what = width_notice(out.fields[k], largest_diameter()); !what.empty())
+                out.notices.push_back(out.source.place("/fields/" + std::to_string(k) + "/width") + ": " +
+                                      what);
+    }
+
     /// Notes meshes that are much larger than the domain or smaller than the particles, as with other units.
     void check_mesh_sizes()
     {
         const double domain = (out.world->high() - out.world->low()).norm();
-        double diameter = largest;
-        for (const FillSpec& f : fills) diameter = std::max(diameter, 2 * f.radius);
+        const double diameter = largest_diameter();
         for (const auto& [place, size] : meshes)
             if (size > 100 * domain || size < 0.1 * diameter)
                 out.notices.push_back(place + ": the mesh is " + io::shortest(size) + " m long, " +

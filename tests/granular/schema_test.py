@@ -49,7 +49,10 @@ EVERYTHING = {
     "particles": [{"r": [0, 0, 0], "radius": 0.05, "material": "glass", "v": [0, 0, 1], "omega": [1, 0, 0], "fixed": False,
                    "force": [0, 1, 0], "replica": 0, "orientation": [0.6, 0, 0, -0.8]}],
     "fill": [{"type": "lattice", "low": [0, 0, 0.2], "high": [0.3, 0.3, 0.5], "radius": 0.05, "least_radius": 0.04,
-              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}]}
+              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}],
+    "fields": [{"name": "slice", "low": [-1, -1, -1], "high": [3, 2, 3], "cells": [4, 1, 5], "kernel": "lucy", "width": 0.2,
+                "values": "averages", "edges": "closed", "interval": 0.4, "samples": 2, "replica": 0},
+               {"low": [0, 0, 0], "high": [1, 1, 1], "cells": [1, 1, 1], "width": 0.1, "values": "points", "interval": 1e-5}]}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
@@ -83,6 +86,17 @@ BY_THE_PROGRAM = [
     ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: does not exist"),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: high must be at least a diameter, 0.1, above low, 0, got 0.05"),
     ("/step", 0.1, "/step: step must not be above"),
+    ("/fields/0/high/0", -1, "/fields/0/high/0: high must be above low, -1, got -1"),
+    ("/fields/1/low/2", 2, "/fields/1/high/2: high must be above low, 2, got 1"),
+    ("/fields/0/low", [2.5, -1, -1], "/fields/0/low/0: the grid is outside of the domain along x, from -1 to 2, got 2.5"),
+    ("/fields/0/low/1", -1.5, "/fields/0/low/1: the grid must be within the domain along y, from -1 to 2, which is periodic, got -1.5"),
+    ("/fields/0/high/1", 2.5, "/fields/0/high/1: the grid must be within the domain along y, from -1 to 2, which is periodic, got 2.5"),
+    ("/fields/0/cells", [1000, 1000, 1000], "/fields/0/cells: a grid must have at most 1e7 cells, got 1e+09"),
+    ("/fields/0/width", 1e-7, "/fields/0/width: width must be at least 1e-6 of the length of the grid along x, 4, got 1e-07"),
+    ("/fields/0/width", 4, "/fields/0/width: width must be at most the length of the domain along y, which is periodic, 3, got 4"),
+    ("/fields/1/edges", "closed", "/fields/1/edges: edges must be open with the values"),
+    ("/fields/0/samples", 50000, "/fields/0/samples: samples must be from 1 to the number of steps of the interval, 40000, got 50000"),
+    ("/fields/1/name", "slice", "/fields/1/name: two fields have the same name, got"),
 ]
 # Cases that both the schema and the program reject
 BY_BOTH = [
@@ -145,6 +159,20 @@ BY_BOTH = [
     ("/laws/2/rolling/k_r", -1, "/laws/2/rolling/k_r: k_r must not be negative"),
     ("/laws/2/rolling/eta_r", -1, "/laws/2/rolling/eta_r: eta_r must not be negative"),
     ("/laws/2/damping", 1, "/laws/2/damping: unknown key \"damping\""),
+    ("/fields", {}, "/fields: fields must be a list"),
+    ("/fields/0/cells", MISSING, "/fields/0: missing key 'cells'"),
+    ("/fields/0/cells/2", 0, "/fields/0/cells/2: cells must be integers from 1 to 1e7, got 0"),
+    ("/fields/0/cells/0", 2.5, "/fields/0/cells/0: cells must be integers from 1 to 1e7, got 2.5"),
+    ("/fields/0/cells", [4, 5], "/fields/0/cells: cells must be a list of 3 numbers"),
+    ("/fields/0/width", 0, "/fields/0/width: width must be positive, got 0"),
+    ("/fields/0/width", MISSING, "/fields/0: missing key 'width'"),
+    ("/fields/0/interval", MISSING, "/fields/0: missing key 'interval'"),
+    ("/fields/0/kernel", "gauss", "/fields/0/kernel: unknown kernel"),
+    ("/fields/0/name", "a/b", "/fields/0/name: name must consist of letters, digits, - and _"),
+    ("/fields/0/samples", 0, "/fields/0/samples: samples must be from 1"),
+    ("/fields/0/replica", 70000, "/fields/0/replica: replica must be at most 65535, got 70000"),
+    ("/fields/0/values", "means", "/fields/0/values: unknown values"),
+    ("/fields/0/every", 1, "/fields/0/every: unknown key"),
     ("/boundaries/0/type", "wall", "/boundaries/0/type: unknown type"),
     ("/boundaries/0/type", MISSING, "/boundaries/0: missing key 'type'"),
     ("/boundaries/0/normal", [0, 0, 0], "/boundaries/0/normal: normal must have a direction"),

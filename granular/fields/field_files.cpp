@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/fields/field_files.hpp"
+
+#include "io/formats/csv.hpp"
+#include "io/formats/vtk.hpp"
+
+namespace hilda::granular {
+
+namespace {
+
+/// Calls f(name, numbers) for each member of the values, numbers being an array of 1, 3 or 9 of them
+template <class F>
+void each_field(const FieldValues& v, const F& f)
+{
+    const auto three = [](const Vec3& a) { return std::array{a.x, a.y, a.z}; };
+    f("density", std::array{v.density});
+    f("volume_fraction", std::array{v.volume_fraction});
+    f("momentum", three(v.momentum));
+    f("velocity", three(v.velocity));
+    f("kinetic_stress", v.kinetic_stress);
+    f("contact_stress", v.contact_stress);
+    f("boundary_force", three(v.boundary_force));
+}
+
+}  // namespace
+
+std::string fields_csv_header()
+{
+    std::string names = "t,x,y,z";
+    each_field({}, [&](const std::string& name, const auto& numbers) {
+        names += ',' + name;
+        if (numbers.size() == 3) names += "_x," + name + "_y," + name + "_z";
+        for (std::size_t k = 0; numbers.size() == 9 && k < 9; ++k)
+            names += (k == 0 ? "_" : ',' + name + '_') + "xyz"[k / 3] + "xyz"[k % 3];
+    });
+    return names + '\n';
+}
+
+void fields_csv(std::string& text, double t, const FieldGrid& grid, const FieldSums& sums)
+{
+    for (int k = 0; k < grid.cells[2]; ++k)
+        for (int j = 0; j < grid.cells[1]; ++j)
+            for (int i = 0; i < grid.cells[0]; ++i) {
+                io::append_number(text, t);
+                const auto append = [&](const auto& numbers) {
+                    for (const double x : numbers) text += ',', io::append_number(text, x);
+                };
+                const Vec3 at = grid.centre(i, j, k);
+                append(std::array{at.x, at.y, at.z});
+                each_field(sums.values(grid.number(i, j, k)),
+                           [&](const char*, const auto& numbers) { append(numbers); });
+                text += '\n';
+            }
+}
+
+std::string fields_vti(const FieldGrid& grid, const FieldSums& sums)
+{
+    std::vector<FieldValues> values;
+    for (std::size_t n = 0; n < grid.count(); ++n) values.push_back(sums.values(n));
+    io::VtkImageData file(grid.low, {grid.edge(0), grid.edge(1), grid.edge(2)}, grid.cells);
+    file.section("CellData");
+    each_field({}, [&](const std::string& name, const auto& zeros) {
+        const auto components = zeros.size();
+        file.array<double>(name.c_str(), static_cast<int>(components), grid.count() * components,
+                           [&values, name](const std::function<void(double)>& put) {
+                               for (const FieldValues& v : values)
+                                   each_field(v, [&](const std::string& of, const auto& numbers) {
+                                       for (std::size_t k = 0; of == name && k < numbers.size(); ++k)
+                                           put(numbers[k]);
+                                   });
+                           });
+    });
+    return file.text();
+}
+
+}  // namespace hilda::granular

@@ -120,12 +120,12 @@ public:
         for (ObjectReader& b : o.objects("boundaries")) boundary(b);
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
-        out.fields = read_fields(o, world);
+        out.outputs = read_outputs(o, world);
         o.finish();
         check_mesh_sizes();
         check_widths();
         Environment available = environment;
-        available.lists_contacts = environment.lists_contacts || !out.fields.empty();
+        available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
                      fills, available);
         double all = 0;
@@ -205,8 +205,9 @@ private:
 
     void check_widths()
     {
-        for (std::size_t k = 0; k < out.fields.size(); ++k)
-            if (const std::string what = width_notice(out.fields[k], largest_diameter()); !what.empty())
+        for (std::size_t k = 0; k < out.outputs.fields.size(); ++k)
+            if (const std::string what = width_notice(out.outputs.fields[k], largest_diameter());
+                !what.empty())
                 out.notices.push_back(out.source.place("/fields/" + std::to_string(k) + "/width") + ": " +
                                       what);
     }

@@ -90,6 +90,24 @@ Kernel read_kernel(ObjectReader& o, const FieldGrid& grid)
     return kernel;
 }
 
+/// A number of samples, or the number of steps in an interval if this is less
+long most_samples(long samples, double interval, double h)
+{
+    const double steps = std::max(1., std::floor(interval / h * (1 + 1e-9)));
+    return steps < static_cast<double>(samples) ? static_cast<long>(steps) : samples;
+}
+
+/// Number of samples of an interval [s] with steps of size h: at least 1 and at most one in each step
+long read_samples(ObjectReader& o, std::optional<long> fallback, double interval, double h)
+{
+    const long samples = o.count("samples", fallback);
+    const long most = most_samples(samples, interval, h);
+    if (samples < 1 || samples > most)
+        o.fail("samples", "samples must be from 1 to the number of steps of the interval, " +
+                              std::to_string(most) + ", got " + std::to_string(samples));
+    return samples;
+}
+
 FieldSpec read_field(ObjectReader& o, const WorldOptions& world, const std::string& number)
 {
     FieldSpec spec;
@@ -109,18 +127,6 @@ FieldSpec read_field(ObjectReader& o, const WorldOptions& world, const std::stri
     return spec;
 }
 
-}  // namespace
-
-long read_samples(ObjectReader& o, std::optional<long> fallback, double interval, double h)
-{
-    const long samples = o.count("samples", fallback);
-    const double most = std::max(1., std::floor(interval / h * (1 + 1e-9)));
-    if (samples < 1 || static_cast<double>(samples) > most)
-        o.fail("samples", "samples must be from 1 to the number of steps of the interval, " +
-                              io::shortest(most) + ", got " + std::to_string(samples));
-    return samples;
-}
-
 std::vector<FieldSpec> read_fields(ObjectReader& o, const WorldOptions& world)
 {
     std::vector<FieldSpec> all;
@@ -129,6 +135,46 @@ std::vector<FieldSpec> read_fields(ObjectReader& o, const WorldOptions& world)
         for (std::size_t k = 0; k + 1 < all.size(); ++k)
             if (all[k].name == all.back().name)
                 one.fail("name", "two fields have the same name, got " + io::described(all.back().name));
+    }
+    return all;
+}
+
+ContactSpec read_contacts(ObjectReader o)
+{
+    ContactSpec spec;
+    if (o.has("interval")) spec.interval = o.positive("interval");
+    if (o.has("times")) {
+        spec.times = o.numbers("times", o.list("times", true).size());
+        for (std::size_t k = 0; k < spec.times.size(); ++k)
+            if (!(spec.times[k] >= 0))
+                o.fail("times", k, "times must not be negative, got " + io::shortest(spec.times[k]));
+    }
+    spec.network = o.flag("network", false);
+    if (!spec.has_lists() && !spec.network)
+        o.fail("contacts must have interval, times, or network with the value true, got none of them");
+    o.finish();
+    return spec;
+}
+
+LoadSpec read_loads(ObjectReader o, double h)
+{
+    LoadSpec spec;
+    spec.interval = o.positive("interval");
+    spec.samples = read_samples(o, most_samples(100, spec.interval, h), spec.interval, h);
+    o.finish();
+    return spec;
+}
+
+}  // namespace
+
+OutputSpecs read_outputs(ObjectReader& o, const WorldOptions& world)
+{
+    OutputSpecs all{.fields = read_fields(o, world)};
+    if (o.has("contacts")) all.contacts = read_contacts(o.object("contacts"));
+    if (o.has("loads")) {
+        all.loads = read_loads(o.object("loads"), world.h);
+        if (o.find("boundaries") == nullptr || o.find("boundaries")->size() == 0)
+            o.fail("loads", "loads needs boundaries, got none");
     }
     return all;
 }

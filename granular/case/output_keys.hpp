@@ -4,20 +4,14 @@
 #pragma once
 
 #include "granular/case/object_reader.hpp"
-#include "granular/fields/field_spec.hpp"
+#include "granular/case/output_spec.hpp"
 
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace hilda::granular {
 
-/// Reads the list `fields`. Throws io::PlacedError.
-std::vector<FieldSpec> read_fields(ObjectReader& o, const WorldOptions& world);
-
-/// Reads the number of samples of an interval [s] with steps of size h: at least 1 and at most one in each
-/// step. Throws io::PlacedError.
-long read_samples(ObjectReader& o, std::optional<long> fallback, double interval, double h);
+/// Reads `fields`, `contacts` and `loads`. Throws io::PlacedError.
+OutputSpecs read_outputs(ObjectReader& o, const WorldOptions& world);
 
 /// A notice if the kernel is smaller than the largest particles: such fields have the structure of single
 /// particles. Empty otherwise.

@@ -3,6 +3,7 @@
 
 #include "io/formats/csv.hpp"
 #include "io/formats/vtk.hpp"
+#include "io/message.hpp"
 
 namespace hilda::granular {
 
@@ -38,10 +39,11 @@ std::string fields_csv_header()
 
 void fields_csv(std::string& text, double t, const FieldGrid& grid, const FieldSums& sums)
 {
+    const std::string time = io::formatted("%.12g", t);
     for (int k = 0; k < grid.cells[2]; ++k)
         for (int j = 0; j < grid.cells[1]; ++j)
             for (int i = 0; i < grid.cells[0]; ++i) {
-                io::append_number(text, t);
+                text += time;
                 const auto append = [&](const auto& numbers) {
                     for (const double x : numbers) text += ',', io::append_number(text, x);
                 };

@@ -4,6 +4,7 @@
 #include "granular/backend/par.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::granular {
 
@@ -74,6 +75,13 @@ void FieldSums::add(const FieldInput& instant)
     add_each(instant.particles);
     add_each(instant.contacts);
     ++count;
+}
+
+bool FieldSums::is_finite() const
+{
+    return std::all_of(cells.begin(), cells.end(), [](const std::array<double, sums>& cell) {
+        return std::all_of(cell.begin(), cell.end(), [](double x) { return std::isfinite(x); });
+    });
 }
 
 void FieldSums::reset()

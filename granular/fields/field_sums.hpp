@@ -80,7 +80,7 @@ public:
         a.value(count);
         const std::size_t n = cells.size();
         a.list(cells);
-        a.check(cells.size() == n, "wrong number of cells of a field");
+        a.check(cells.size() == n && is_finite() && count >= 0, "the sums of a field are wrong");
     }
 
 private:
@@ -92,6 +92,7 @@ private:
         std::array<double, 11> addend;
     };
 
+    bool is_finite() const;
     std::vector<Part> parts(const FieldParticle& p) const;
     std::vector<Part> parts(const FieldContact& c) const;
     template <class Item>

@@ -9,7 +9,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <numeric>
 
 namespace hilda::granular {
 
@@ -21,15 +20,14 @@ namespace fs = std::filesystem;
 class FieldOutput {
 public:
     FieldOutput(const FieldSpec& spec, const CaseSetup& run)
-        : spec(spec), directory(run.directory + '/'), h(run.c.h), sums(spec.grid, spec.kernel),
-          sample_steps(run.steps_in(spec.interval / static_cast<double>(spec.samples))),
-          row_steps(sample_steps * spec.samples)
+        : spec(spec), directory(run.directory + '/'), h(run.c.h),
+          sums(spec.grid, spec.kernel), times{run.steps_in(spec.interval), spec.samples}
     {}
 
-    long interval() const { return sample_steps; }
     int replica() const { return spec.replica; }
-    /// Whether the fields take the state after this number of steps. Means begin after the start.
-    bool takes(long steps) const { return steps % sample_steps == 0 && (steps > 0 || spec.samples == 1); }
+    /// Whether the fields take the state after n steps. The start is not part of a mean.
+    bool takes(long n) const { return n > 0 ? times.takes(n) : spec.samples == 1; }
+    long next(long n) const { return times.next(n); }
 
     void open()
     {
@@ -43,7 +41,7 @@ public:
         fields_csv(file->buffer, t, spec.grid, sums);
         file->flush_when_full();
         io::make_directory(directory + "vtk");
-        io::write_file(directory + frame(steps / row_steps), fields_vti(spec.grid, sums));
+        io::write_file(directory + frame(steps / times.steps), fields_vti(spec.grid, sums));
         sums.reset();
     }
     void sync() { file->sync(); }
@@ -52,6 +50,7 @@ public:
         std::uint64_t length = a.reads() ? 0 : file->size();
         a.value(length);
         sums.transfer(a);
+        a.check(sums.instants() < spec.samples, "wrong number of samples of a field");
         if (a.reads()) file.emplace(directory + csv(), length, true);
     }
     /// Writes the list of the frames up to this number of steps, and removes later ones of an interrupted run
@@ -60,10 +59,10 @@ public:
     {
         file->flush();
         std::vector<std::pair<double, std::string>> frames;
-        for (long k = 0; k * row_steps <= steps; ++k)
+        for (long k = 0; k * times.steps <= steps; ++k)
             if (fs::exists(directory + frame(k)))
-                frames.emplace_back(static_cast<double>(k * row_steps) * h, frame(k));
-        for (long k = steps / row_steps + 1; std::remove((directory + frame(k)).c_str()) == 0;) ++k;
+                frames.emplace_back(static_cast<double>(k * times.steps) * h, frame(k));
+        for (long k = steps / times.steps + 1; std::remove((directory + frame(k)).c_str()) == 0;) ++k;
         io::write_file(directory + pvd(), io::vtk_collection(frames));
     }
     std::string csv() const { return "fields-" + spec.name + ".csv"; }
@@ -76,31 +75,28 @@ private:
     const std::string directory;
     const double h;
     FieldSums sums;
-    const long sample_steps, row_steps;
+    const SampleTimes times;
     std::optional<io::OutputFile> file;
 };
-
-/// Throws NotFiniteState if a force is not finite.
-std::vector<ContactRecord> finite_contacts(const World& w)
-{
-    std::vector<ContactRecord> all = w.contacts();
-    for (const ContactRecord& c : all)
-        if (!finite(c.F)) w.check_loads(w.totals());
-    return all;
-}
 
 class FieldOutputs final : public Sink {
 public:
     explicit FieldOutputs(const CaseSetup& run) : world(*run.c.world)
     {
-        all.reserve(run.c.fields.size());
-        for (const FieldSpec& spec : run.c.fields) {
+        for (const FieldSpec& spec : run.c.outputs.fields)
             all.push_back(std::make_unique<FieldOutput>(spec, run));
-            common = std::gcd(common, all.back()->interval());
-        }
     }
 
-    long interval() const override { return common; }
+    bool takes(long n) const override
+    {
+        return std::any_of(all.begin(), all.end(), [n](const auto& one) { return one->takes(n); });
+    }
+    long next(long n) const override
+    {
+        long first = std::numeric_limits<long>::max();
+        for (const auto& one : all) first = std::min(first, one->next(n));
+        return first;
+    }
     void open() override
     {
         for (auto& one : all) one->open();
@@ -139,7 +135,6 @@ public:
 private:
     const World& world;
     std::vector<std::unique_ptr<FieldOutput>> all;
-    long common = 0;  ///< greatest common divisor of the intervals [steps]
 };
 
 /// Removes the files of a folder whose names begin and end so.
@@ -157,7 +152,7 @@ void remove_files(const std::string& folder, const std::string& begin, const std
 const bool registered =
     io::Registry<SinkType>::add({.name = "fields",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
-                                     if (run.c.fields.empty()) return nullptr;
+                                     if (run.c.outputs.fields.empty()) return nullptr;
                                      return std::make_unique<FieldOutputs>(run);
                                  },
                                  .remove =

@@ -52,7 +52,8 @@ EVERYTHING = {
               "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}],
     "fields": [{"name": "slice", "low": [-1, -1, -1], "high": [3, 2, 3], "cells": [4, 1, 5], "kernel": "lucy", "width": 0.2,
                 "values": "averages", "edges": "closed", "interval": 0.4, "samples": 2, "replica": 0},
-               {"low": [0, 0, 0], "high": [1, 1, 1], "cells": [1, 1, 1], "width": 0.1, "values": "points", "interval": 1e-5}]}
+               {"low": [0, 0, 0], "high": [1, 1, 1], "cells": [1, 1, 1], "width": 0.1, "values": "points", "interval": 1e-5}],
+    "contacts": {"interval": 1e-5, "times": [0, 2e-5], "network": True}, "loads": {"interval": 0.4, "samples": 2}}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
@@ -96,6 +97,8 @@ BY_THE_PROGRAM = [
     ("/fields/0/width", 4, "/fields/0/width: width must be at most the length of the domain along y, which is periodic, 3, got 4"),
     ("/fields/1/edges", "closed", "/fields/1/edges: edges must be open with the values"),
     ("/fields/0/samples", 50000, "/fields/0/samples: samples must be from 1 to the number of steps of the interval, 40000, got 50000"),
+    ("/loads/samples", 50000, "/loads/samples: samples must be from 1 to the number of steps of the interval, 40000, got 50000"),
+    ("/boundaries", [], "/loads: loads needs boundaries, got none"),
     ("/fields/1/name", "slice", "/fields/1/name: two fields have the same name, got"),
 ]
 # Cases that both the schema and the program reject
@@ -159,6 +162,17 @@ BY_BOTH = [
     ("/laws/2/rolling/k_r", -1, "/laws/2/rolling/k_r: k_r must not be negative"),
     ("/laws/2/rolling/eta_r", -1, "/laws/2/rolling/eta_r: eta_r must not be negative"),
     ("/laws/2/damping", 1, "/laws/2/damping: unknown key \"damping\""),
+    ("/contacts", {}, "/contacts: contacts must have interval, times, or network with the value true"),
+    ("/contacts", {"network": False, "times": []}, "/contacts: contacts must have interval, times, or network with the value true"),
+    ("/contacts/interval", 0, "/contacts/interval: interval must be positive, got 0"),
+    ("/contacts/times/1", -1, "/contacts/times/1: times must not be negative, got -1"),
+    ("/contacts/times", 0.1, "/contacts/times: times must be a list"),
+    ("/contacts/network", 1, "/contacts/network: network must be true or false"),
+    ("/contacts/every", 1, "/contacts/every: unknown key"),
+    ("/loads", [], "/loads: must be an object"),
+    ("/loads/interval", MISSING, "/loads: missing key 'interval'"),
+    ("/loads/samples", 0, "/loads/samples: samples must be from 1"),
+    ("/loads/mean", 1, "/loads/mean: unknown key"),
     ("/fields", {}, "/fields: fields must be a list"),
     ("/fields/0/cells", MISSING, "/fields/0: missing key 'cells'"),
     ("/fields/0/cells/2", 0, "/fields/0/cells/2: cells must be integers from 1 to 1e7, got 0"),

@@ -82,6 +82,17 @@ def main():
             expect(row["lid_vx"] == row["lid_wz"] == 0, f"the lid moves along z only: {row}")
         expect(abs(rows[-1]["wall_wz"] - 5 * 5e-3) < 5e-5, f"the wall turns with 5 t: {rows[-1]}")
 
+        particles, last = rows_of(runs, "cup", "particles.csv"), rows[-1]
+        masses = [2500 * 4 / 3 * math.pi * p["radius"] ** 3 for p in particles]
+        turning = sum(0.2 * m * p["radius"] ** 2 * sum(p["omega_" + a] ** 2 for a in "xyz") for m, p in zip(masses, particles))
+        moving = sum(0.5 * m * sum(p["v" + a] ** 2 for a in "xyz") for m, p in zip(masses, particles))
+        height = sum(9.81 * m * p["z"] for m, p in zip(masses, particles))
+        expect(last["particles"] == len(particles), f"number of particles: {last}")
+        # masses are in single precision
+        for name, value in (("rotational_energy", turning), ("kinetic_energy", turning + moving), ("potential_energy", height),
+                            *(("momentum_" + a, sum(m * p["v" + a] for m, p in zip(masses, particles))) for a in "xyz")):
+            expect(abs(last[name] - value) < 1e-6 * sum(masses), f"{name}: {last[name]}, {value}")
+
         floor = {"name": "floor", "type": "plane", "normal": [0, 0, 1], "material": "steel"}
         still = runs.case("still", boundaries=[floor], end=1e-4, interval=5e-5)
         runs.finish(still, "--quiet", "--output", "still")
@@ -100,7 +111,7 @@ def main():
             mine = parts[3 * k:3 * k + 3]
             expect(sum(one["particles"] for one in mine) == particles, f"numbers of particles: {mine}")
             expect(all(one["t"] == row["t"] for one in mine), f"times: {mine}")
-            for name in ("kinetic_energy", "contacts", *(f"{b}_{c}{a}" for b in ("floor", "wall") for c in "FT" for a in "xyz")):
+            for name in ("kinetic_energy", "contacts", "particles", *("momentum_" + a for a in "xyz"), *(f"{b}_{c}{a}" for b in ("floor", "wall") for c in "FT" for a in "xyz")):
                 total, size = sum(one[name] for one in mine), sum(abs(one[name]) for one in mine)
                 expect(abs(total - row[name]) <= 1e-8 * size, f"{name} at {row['t']} s: {total} and {row[name]}")
         expect(len({row["kinetic_energy"] for row in parts[3:6]}) == 3 and parts[-1]["contacts"] > 50, f"{parts[3:6]} {parts[-1]}")

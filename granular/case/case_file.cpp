@@ -6,6 +6,7 @@
 #include "granular/case/fill.hpp"
 #include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
+#include "granular/fields/field_sums.hpp"
 #include "io/error.hpp"
 
 #include <algorithm>
@@ -56,10 +57,13 @@ void read_domain(ObjectReader domain, WorldOptions& o)
 /// Particles are inserted and outputs are written in pieces, so that the host needs little more than the
 /// arrays of the world. A table of contacts is sorted in memory; a settled bed has 2.3 contacts per particle.
 void check_memory(const io::JsonSource& source, double particles, double largest, const WorldOptions& o,
-                  bool rotation_laws, const std::vector<FillSpec>& fills, const Environment& available)
+                  bool rotation_laws, const std::vector<FillSpec>& fills, const OutputSpecs& outputs,
+                  const Environment& available)
 {
     constexpr double gigabyte = 1e9, of_output = 8, of_contacts = 2 * 2.3 * sizeof(ContactRecord),
                      of_cell = 4;
+    double of_fields = 0;  // cells
+    for (const FieldSpec& f : outputs.fields) of_fields += static_cast<double>(f.grid.count());
     std::uint16_t replicas = 0;
     for (const FillSpec& f : fills) {
         particles += estimated_count(f);
@@ -84,6 +88,7 @@ void check_memory(const io::JsonSource& source, double particles, double largest
           in_world(Device::cpu) + of_output + (available.lists_contacts ? of_contacts : 0), available.memory,
           "");
     check("/fill", particles, "particles", in_world(Device::cuda), available.device_memory, " of the GPU");
+    check("/fields", of_fields, "cells", FieldSums::bytes_of_cell(), available.memory, "");
     if (particles > 0)
         check("/domain", cells, "cells", of_cell, std::min(available.memory, available.device_memory), "");
 }
@@ -127,7 +132,7 @@ public:
         Environment available = environment;
         available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
-                     fills, available);
+                     fills, out.outputs, available);
         double all = 0;
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));

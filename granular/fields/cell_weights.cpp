@@ -83,9 +83,9 @@ void CellWeights::fill(Footprint& to, const Three& r, const Three& a) const
     const auto add = [&](const Three& at, double factor) {
         gaussian ? add_gaussian(to, at, factor) : add_lucy(to, at, factor);
     };
-    const double length = vector(a).norm(), panel = gaussian ? kernel.width : kernel.width / 2;
+    const double length = vector(a).norm();
     if (length == 0) return add(r, 1);
-    const int panels = std::max(1, rounded_up(length / panel));
+    const int panels = std::max(1, rounded_up(length / kernel.width));
     for (int n = 0; n < panels; ++n)
         for (const QuadraturePoint& q : quadrature) {
             const double s = (n + q.place) / panels;
@@ -120,48 +120,45 @@ void CellWeights::add_gaussian(Footprint& to, const Three& r, double factor) con
 
 void CellWeights::add_lucy(Footprint& to, const Three& r, double factor) const
 {
+    // Gauss-Legendre points in the cube around the kernel: two on each of `panels` parts of an edge of a
+    // cell, with equal weights
     struct Point {
-        std::size_t cell;
-        double value;
+        double square;  ///< of the coordinate relative to r, over w²
+        int cell;       ///< in the block; -1: outside of it
     };
-    thread_local std::vector<Point> inside;
-    inside.clear();
-    // Gauss-Legendre points: two on each of `panels` parts of an edge of a cell, with equal weights
-    std::array<int, 3> panels = {}, first = {}, last = {};
-    Three panel = {};
+    thread_local std::array<std::vector<Point>, 3> of_axis;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        panels[axis] = std::max(1, rounded_up(3 * grid.edge(int(axis)) / kernel.width));
-        panel[axis] = grid.edge(int(axis)) / panels[axis];
-        const double at = (r[axis] - grid.low[axis]) / panel[axis], reach = kernel.width / panel[axis];
-        first[axis] = -2 * rounded_up(reach - at), last[axis] = 2 * rounded_up(at + reach) - 1;
-        if (!is_closed(axis)) continue;
-        if (is_outside(axis, r[axis])) return;
-        first[axis] = std::max(first[axis], 0);
-        last[axis] = std::min(last[axis], 2 * grid.cells[axis] * panels[axis] - 1);
-    }
-    double sum = 0;
-    std::array<int, 3> n = {};
-    constexpr double gauss = 0.28867513459481287;  // 1/(2 √3)
-    const auto place = [&](std::size_t axis) {
-        const int number = n[axis] >> 1;
-        const double in_panel = 0.5 + ((n[axis] & 1) != 0 ? gauss : -gauss);
-        return grid.low[axis] + (number + in_panel) * panel[axis] - r[axis];
-    };
-    const auto cell = [&](std::size_t axis) {  // in the block
-        return n[axis] < 0 ? -1 : n[axis] / (2 * panels[axis]) - to.begin[axis];
-    };
-    const auto in_block = [&](std::size_t axis) { return cell(axis) >= 0 && cell(axis) < to.count[axis]; };
-    for (n[2] = first[2]; n[2] <= last[2]; ++n[2])
-        for (n[1] = first[1]; n[1] <= last[1]; ++n[1])
-            for (n[0] = first[0]; n[0] <= last[0]; ++n[0]) {
-                const double value = kernel.value({place(0), place(1), place(2)});
-                sum += value;
-                if (value > 0 && in_block(0) && in_block(1) && in_block(2)) {
-                    const int row = cell(2) * to.count[1] + cell(1);
-                    inside.push_back({static_cast<std::size_t>(row) * to.count[0] + cell(0), value});
-                }
+        of_axis[axis].clear();
+        if (is_closed(axis) && is_outside(axis, r[axis])) return;
+        const int panels = std::max(1, rounded_up(3 * grid.edge(int(axis)) / kernel.width)),
+                  end = grid.cells[axis] * panels;
+        const double panel = grid.edge(int(axis)) / panels, at = (r[axis] - grid.low[axis]) / panel,
+                     reach = kernel.width / panel;
+        for (int n = -rounded_up(reach - at); n < rounded_up(at + reach); ++n) {
+            if (is_closed(axis) && (n < 0 || n >= end)) continue;
+            const int cell = n < 0 ? -1 : n / panels - to.begin[axis];
+            for (const double place : {-1., 1.}) {
+                const double x = (n + 0.5 + place / std::sqrt(12.) - at) / reach;
+                of_axis[axis].push_back({x * x, cell >= 0 && cell < to.count[axis] ? cell : -1});
             }
-    for (const Point& p : inside) to.weight[p.cell] += factor * p.value / sum;
+        }
+    }
+    thread_local std::vector<double> values;
+    values.assign(to.weight.size(), 0);
+    double sum = 0;
+    for (const Point& z : of_axis[2])
+        for (const Point& y : of_axis[1]) {
+            const double yz = y.square + z.square;
+            if (yz >= 1) continue;
+            const int row = (z.cell * to.count[1] + y.cell) * to.count[0];
+            const bool in_block = z.cell >= 0 && y.cell >= 0;
+            for (const Point& x : of_axis[0]) {
+                const double value = Kernel::lucy(yz + x.square);
+                sum += value;
+                if (in_block && x.cell >= 0) values[static_cast<std::size_t>(row + x.cell)] += value;
+            }
+        }
+    for (std::size_t k = 0; k < values.size(); ++k) to.weight[k] += factor / sum * values[k];
 }
 
 }  // namespace hilda::granular

@@ -57,7 +57,7 @@ struct Footprint {
 ///     gaussian:  integrals in closed form
 ///     lucy:      Gauss-Legendre quadrature with 2 × 2 × 2 points in each cube of edge w/3 or less of a cell,
 ///                divided by the sum over all points, also those outside of the grid
-///     a line:    Gauss-Legendre quadrature with four points for each length of w (lucy: w/2)
+///     a line:    Gauss-Legendre quadrature with four points for each length of w
 ///
 /// With FieldGrid::Values::points, a weight is the value at the centre of the cell, in closed form, times its
 /// volume. The sum is then close to 1 if the cells are small compared to the width.

@@ -37,42 +37,41 @@ std::string fields_csv_header()
     return names + '\n';
 }
 
-void fields_csv(std::string& text, double t, const FieldGrid& grid, const FieldSums& sums)
+void fields_csv(double t, const FieldGrid& grid, const FieldSums& sums, const io::Append& append_line)
 {
     const std::string time = io::formatted("%.12g", t);
+    std::string line;
+    const auto append = [&](const auto& numbers) {
+        for (const double x : numbers) line += ',', io::append_number(line, x);
+    };
     for (int k = 0; k < grid.cells[2]; ++k)
         for (int j = 0; j < grid.cells[1]; ++j)
             for (int i = 0; i < grid.cells[0]; ++i) {
-                text += time;
-                const auto append = [&](const auto& numbers) {
-                    for (const double x : numbers) text += ',', io::append_number(text, x);
-                };
                 const Vec3 at = grid.centre(i, j, k);
-                append(std::array{at.x, at.y, at.z});
+                line = time + io::formatted(",%.12g,%.12g,%.12g", at.x, at.y, at.z);
                 each_field(sums.values(grid.number(i, j, k)),
                            [&](const char*, const auto& numbers) { append(numbers); });
-                text += '\n';
+                line += '\n';
+                append_line(line);
             }
 }
 
-std::string fields_vti(const FieldGrid& grid, const FieldSums& sums)
+void fields_vti(const FieldGrid& grid, const FieldSums& sums, const io::Append& append)
 {
-    std::vector<FieldValues> values;
-    for (std::size_t n = 0; n < grid.count(); ++n) values.push_back(sums.values(n));
     io::VtkImageData file(grid.low, {grid.edge(0), grid.edge(1), grid.edge(2)}, grid.cells);
     file.section("CellData");
     each_field({}, [&](const std::string& name, const auto& zeros) {
         const auto components = zeros.size();
-        file.array<double>(name.c_str(), static_cast<int>(components), grid.count() * components,
-                           [&values, name](const std::function<void(double)>& put) {
-                               for (const FieldValues& v : values)
-                                   each_field(v, [&](const std::string& of, const auto& numbers) {
+        file.array<double>(name, static_cast<int>(components), grid.count() * components,
+                           [&, name](const std::function<void(double)>& put) {
+                               for (std::size_t n = 0; n < grid.count(); ++n)
+                                   each_field(sums.values(n), [&](std::string_view of, const auto& numbers) {
                                        for (std::size_t k = 0; of == name && k < numbers.size(); ++k)
                                            put(numbers[k]);
                                    });
                            });
     });
-    return file.text();
+    file.write(append);
 }
 
 }  // namespace hilda::granular

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/fields/field_sums.hpp"
+#include "io/files.hpp"
 
 #include <string>
 
@@ -11,10 +12,10 @@ namespace hilda::granular {
 
 /// t,x,y,z,density,...: the columns of fields_csv()
 std::string fields_csv_header();
-/// Appends one line per cell, x fastest, with the centre of the cell and the members of FieldValues. SI
+/// Passes on one line per cell, x fastest, with the centre of the cell and the members of FieldValues. SI
 /// units, global frame.
-void fields_csv(std::string& text, double t, const FieldGrid& grid, const FieldSums& sums);
+void fields_csv(double t, const FieldGrid& grid, const FieldSums& sums, const io::Append& append);
 /// The same as VTK XML ImageData: cell data with the names of the members of FieldValues
-std::string fields_vti(const FieldGrid& grid, const FieldSums& sums);
+void fields_vti(const FieldGrid& grid, const FieldSums& sums, const io::Append& append);
 
 }  // namespace hilda::granular

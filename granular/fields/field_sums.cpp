@@ -54,7 +54,11 @@ void FieldSums::add_layer(int layer, std::size_t axis, const std::vector<Part>& 
 template <class Item>
 void FieldSums::add_each(const std::vector<Item>& items)
 {
-    constexpr std::size_t most = 512;
+    // The footprints of a block need about 64 MB at most.
+    double cells_of_kernel = 1;
+    for (int a = 0; a < 3; ++a)
+        cells_of_kernel *= std::min(4 * kernel.reach() / grid.edge(a) + 2., 1. * grid.cells[a]);
+    const auto most = static_cast<std::size_t>(std::clamp(8e6 / cells_of_kernel, 1., 512.));
     const std::size_t axis =
         static_cast<std::size_t>(std::max_element(grid.cells.begin(), grid.cells.end()) - grid.cells.begin());
     for (std::size_t begin = 0; begin < items.size(); begin += most) {

@@ -63,13 +63,15 @@ struct FieldValues {
 class FieldSums {
 public:
     FieldSums(const FieldGrid& grid, const Kernel& kernel)
-        : grid(grid), weights(grid, kernel), cells(grid.count())
+        : grid(grid), kernel(kernel), weights(grid, kernel), cells(grid.count())
     {}
 
     void add(const FieldInput& instant);
     /// Number of instants added since the last reset()
     long instants() const { return count; }
     void reset();
+    /// Memory of the sums of a cell [bytes]
+    static constexpr std::size_t bytes_of_cell() { return sums * sizeof(double); }
     /// Means over the instants of the cell with number k
     FieldValues values(std::size_t k) const;
 
@@ -100,6 +102,7 @@ private:
     void add_layer(int layer, std::size_t axis, const std::vector<Part>& all);
 
     FieldGrid grid;
+    Kernel kernel;
     CellWeights weights;
     std::vector<std::array<double, sums>> cells;
     long count = 0;

@@ -31,10 +31,7 @@ struct Powers {
 double Kernel::value(const Vec3& x) const
 {
     const double w3 = width * width * width, q2 = x.dot(x) / (width * width), pi = std::numbers::pi;
-    if (type == Type::lucy) {
-        if (q2 >= 1) return 0;
-        return 105 / (16 * pi * w3) * (1 - 6 * q2 + 8 * q2 * std::sqrt(q2) - 3 * q2 * q2);
-    }
+    if (type == Type::lucy) return 105 / (16 * pi * w3) * lucy(q2);
     if (std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}) > reach()) return 0;
     const double root = std::sqrt(2 * pi) * inside;
     return std::exp(-q2 / 2) / (root * root * root * w3);

@@ -6,6 +6,7 @@
 #include "granular/backend/real.hpp"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 namespace hilda::granular {
@@ -32,6 +33,9 @@ struct Kernel {
     double line(const Vec3& x, const Vec3& a) const;
     /// The integral of g from -∞ to x. Of the Gaussian only.
     double integral(double x) const;
+
+    /// 1 - 6 q² + 8 q³ - 3 q⁴ of q², 0 for q ≥ 1
+    static double lucy(double q2) { return q2 < 1 ? 1 - 6 * q2 + 8 * q2 * std::sqrt(q2) - 3 * q2 * q2 : 0; }
 
     static constexpr double cut = 3;  ///< [w]
     static constexpr std::array<const char*, 2> names = {"gaussian", "lucy"};

@@ -38,10 +38,13 @@ public:
     {
         sums.add(in);
         if (sums.instants() < spec.samples) return;
-        fields_csv(file->buffer, t, spec.grid, sums);
-        file->flush_when_full();
+        fields_csv(t, spec.grid, sums, [&](std::string_view line) {
+            file->buffer += line;
+            file->flush_when_full();
+        });
         io::make_directory(directory + "vtk");
-        io::write_file(directory + frame(steps / times.steps), fields_vti(spec.grid, sums));
+        io::write_file(directory + frame(steps / times.steps),
+                       [&](const io::Append& append) { fields_vti(spec.grid, sums, append); });
         sums.reset();
     }
     void sync() { file->sync(); }

@@ -117,7 +117,7 @@ def slices(fields, quantities):
             shade = axes.pcolormesh(fields.axes[horizontal], fields.axes[vertical], at_time, shading="nearest", cmap="viridis",
                                     vmin=min(0, numpy.nanmin(values)), vmax=numpy.nanmax(values), rasterized=True)
             if quantity == "velocity":
-                arrows(axes, fields, (n, *index), horizontal, vertical)
+                arrows(axes, fields, (n, *index), horizontal, vertical, numpy.nanmax(values))
             axes.set_aspect("equal")
             axes.locator_params(axis="x", nbins=3)
             axis(axes, f"${horizontal}$ [m]" if n == times[-1] else "",
@@ -141,12 +141,12 @@ def size_of_slices(fields, horizontal, vertical, lines, columns):
     return max(4, columns * (panel + 0.4) + 1), lines * (panel * high / wide + 0.3) + 1.5
 
 
-def arrows(axes, fields, index, horizontal, vertical):
-    """Directions of the velocity, about 20 × 20"""
+def arrows(axes, fields, index, horizontal, vertical, fastest):
+    """The velocity in the plane, about 20 × 20 arrows; that of the largest speed has a tenth of the width of the panel"""
     parts = [fields.of("velocity")[a][index] for a in (horizontal, vertical)]
     thin = tuple(slice(max(1, size // 20) // 2, None, max(1, size // 20)) for size in parts[0].shape)
     axes.quiver(fields.axes[horizontal][thin[1]], fields.axes[vertical][thin[0]], parts[0][thin], parts[1][thin],
-                color="w", width=4e-3)
+                color="w", width=6e-3, scale=10 * fastest or None, scale_units="width")
 
 
 def draw_all(folder, quantities):

@@ -25,8 +25,12 @@ class Sink {
 public:
     virtual ~Sink() = default;
 
-    /// The sink receives the nodes whose numbers are multiples of this.
+    /// By default the sink receives the nodes whose numbers are multiples of this.
     virtual long interval() const { return 1; }
+    /// Whether it receives node n
+    virtual bool takes(long n) const { return n % interval() == 0; }
+    /// Number of the first node after n that it receives
+    virtual long next(long n) const { return (n / interval() + 1) * interval(); }
     /// Creates the files of a new run. IoError.
     virtual void open() {}
     /// Takes a node. Not called before open() or transfer().
@@ -114,14 +118,13 @@ public:
     void node(long n, const Node& node)
     {
         for (auto& [name, sink] : all)
-            if (n % sink->interval() == 0) sink->node(node);
+            if (sink->takes(n)) sink->node(node);
     }
     /// Number of the first node after n that a sink takes
     long next(long n) const
     {
         long first = std::numeric_limits<long>::max();
-        for (const auto& [name, sink] : all)
-            first = std::min(first, (n / sink->interval() + 1) * sink->interval());
+        for (const auto& [name, sink] : all) first = std::min(first, sink->next(n));
         return first;
     }
     void sync()

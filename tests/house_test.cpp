@@ -43,7 +43,7 @@ const std::map<std::string, std::set<std::string>> folders = {
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "scenes",
       "scenes/dvi", "surfaces"}},
     {"granular",
-     {"", "backend", "benchmarks", "case", "cases", "core", "core/neighbours", "core/surfaces",
+     {"", "backend", "benchmarks", "case", "cases", "core", "core/neighbours", "core/surfaces", "fields",
       "force_models", "force_models/cohesion", "force_models/normal", "force_models/rolling",
       "force_models/spin", "force_models/tangential", "mesh", "program", "validations", "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},

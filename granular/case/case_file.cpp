@@ -4,7 +4,9 @@
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/continued_case.hpp"
 #include "granular/case/fill.hpp"
+#include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
+#include "granular/fields/field_sums.hpp"
 #include "io/error.hpp"
 
 #include <algorithm>
@@ -55,10 +57,13 @@ void read_domain(ObjectReader domain, WorldOptions& o)
 /// Particles are inserted and outputs are written in pieces, so that the host needs little more than the
 /// arrays of the world. A table of contacts is sorted in memory; a settled bed has 2.3 contacts per particle.
 void check_memory(const io::JsonSource& source, double particles, double largest, const WorldOptions& o,
-                  bool rotation_laws, const std::vector<FillSpec>& fills, const Environment& available)
+                  bool rotation_laws, const std::vector<FillSpec>& fills, const OutputSpecs& outputs,
+                  const Environment& available)
 {
     constexpr double gigabyte = 1e9, of_output = 8, of_contacts = 2 * 2.3 * sizeof(ContactRecord),
                      of_cell = 4;
+    double of_fields = 0;  // cells
+    for (const FieldSpec& f : outputs.fields) of_fields += static_cast<double>(f.grid.count());
     std::uint16_t replicas = 0;
     for (const FillSpec& f : fills) {
         particles += estimated_count(f);
@@ -83,6 +88,7 @@ void check_memory(const io::JsonSource& source, double particles, double largest
           in_world(Device::cpu) + of_output + (available.lists_contacts ? of_contacts : 0), available.memory,
           "");
     check("/fill", particles, "particles", in_world(Device::cuda), available.device_memory, " of the GPU");
+    check("/fields", of_fields, "cells", FieldSums::bytes_of_cell(), available.memory, "");
     if (particles > 0)
         check("/domain", cells, "cells", of_cell, std::min(available.memory, available.device_memory), "");
 }
@@ -119,10 +125,14 @@ public:
         for (ObjectReader& b : o.objects("boundaries")) boundary(b);
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
+        out.outputs = read_outputs(o, world);
         o.finish();
         check_mesh_sizes();
+        check_widths();
+        Environment available = environment;
+        available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
-                     fills, environment);
+                     fills, out.outputs, available);
         double all = 0;
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));
@@ -191,12 +201,27 @@ private:
         o.finish();
     }
 
+    double largest_diameter() const  ///< of the particles [m]
+    {
+        double diameter = largest;
+        for (const FillSpec& f : fills) diameter = std::max(diameter, 2 * f.radius);
+        return diameter;
+    }
+
+    void check_widths()
+    {
+        for (std::size_t k = 0; k < out.outputs.fields.size(); ++k)
+            if (const std::string what = width_notice(out.outputs.fields[k], largest_diameter());
+                !what.empty())
+                out.notices.push_back(out.source.place("/fields/" + std::to_string(k) + "/width") + ": " +
+                                      what);
+    }
+
     /// Notes meshes that are much larger than the domain or smaller than the particles, as with other units.
     void check_mesh_sizes()
     {
         const double domain = (out.world->high() - out.world->low()).norm();
-        double diameter = largest;
-        for (const FillSpec& f : fills) diameter = std::max(diameter, 2 * f.radius);
+        const double diameter = largest_diameter();
         for (const auto& [place, size] : meshes)
             if (size > 100 * domain || size < 0.1 * diameter)
                 out.notices.push_back(place + ": the mesh is " + io::shortest(size) + " m long, " +

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/case/output_spec.hpp"
 #include "granular/world/world.hpp"
 #include "io/json_source.hpp"
 
@@ -21,9 +22,10 @@ struct Case {
     io::JsonSource source;
     std::string name = {};
     std::unique_ptr<World> world = {};
-    double h = 0, end = 0;                     ///< step and end time [s]
-    double interval = 0;                       ///< time between rows of run.csv [s]
-    double frame_interval = 0;                 ///< time between frames [s]
+    double h = 0, end = 0;      ///< step and end time [s]
+    double interval = 0;        ///< time between rows of run.csv [s]
+    double frame_interval = 0;  ///< time between frames [s]
+    OutputSpecs outputs = {};
     std::vector<std::string> boundaries = {};  ///< names, by number
     std::vector<int> moving = {};              ///< numbers of the boundaries that move
     std::vector<std::string> notices = {};     ///< warnings, with their location

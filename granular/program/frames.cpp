@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.pvd, vtk/particles-*.vtp and vtk/boundaries-*.vtp: the particles and the boundaries, for ParaView.
+/// run.pvd, vtk/particles-*.vtp, vtk/boundaries-*.vtp and, of a case with contacts.network,
+/// vtk/contacts-*.vtp: the particles, the boundaries and the contacts, for ParaView.
 
 #include "granular/program/sink.hpp"
 #include "granular/world/boundary_drawing.hpp"
+#include "granular/world/contact_output.hpp"
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 #include "io/formats/vtk.hpp"
@@ -17,12 +19,14 @@ namespace {
 
 std::string frame(long k) { return io::formatted("vtk/particles-%06ld.vtp", k); }
 std::string boundary_frame(long k) { return io::formatted("vtk/boundaries-%06ld.vtp", k); }
+std::string contact_frame(long k) { return io::formatted("vtk/contacts-%06ld.vtp", k); }
 
 /// Removes the frames from number k on.
 void remove_frames(const std::string& folder, long k)
 {
     for (; std::remove((folder + frame(k)).c_str()) == 0; ++k)
-        std::remove((folder + boundary_frame(k)).c_str());
+        for (const std::string& part : {boundary_frame(k), contact_frame(k)})
+            std::remove((folder + part).c_str());
 }
 
 class Frames final : public Sink {
@@ -36,10 +40,11 @@ public:
     void node(const World& w) override
     {
         io::make_directory(directory + "vtk");
-        if (!w.all_boundaries().empty())
-            io::write_file(directory + boundary_frame(w.steps() / steps), boundaries_vtp(w));
-        io::write_file(directory + frame(w.steps() / steps),
-                       [&](const io::Append& append) { particles_vtp(w, append); });
+        const long k = w.steps() / steps;
+        if (!w.all_boundaries().empty()) io::write_file(directory + boundary_frame(k), boundaries_vtp(w));
+        if (c.outputs.contacts && c.outputs.contacts->network)
+            io::write_file(directory + contact_frame(k), contact_network_vtp(w, finite_contacts(w)));
+        io::write_file(directory + frame(k), [&](const io::Append& append) { particles_vtp(w, append); });
     }
 
     /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run
@@ -49,7 +54,7 @@ public:
         remove_frames(directory, c.world->steps() / steps + 1);
         std::vector<std::pair<double, std::string>> frames;
         for (long k = 0; k * steps <= c.world->steps(); ++k)
-            for (const std::string& file : {frame(k), boundary_frame(k)})
+            for (const std::string& file : {frame(k), boundary_frame(k), contact_frame(k)})
                 if (std::filesystem::exists(directory + file))
                     frames.emplace_back(static_cast<double>(k * steps) * c.h, file);
         if (!frames.empty()) io::write_file(directory + "run.pvd", io::vtk_collection(frames));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.csv: energy, contacts, stress, the loads on the boundaries and the motion of those that move.
+/// run.csv: energies, momentum, contacts, stress, the loads on the boundaries and the motion of those that
+/// move.
 
 #include "granular/program/sink.hpp"
 #include "io/message.hpp"
@@ -19,7 +20,9 @@ public:
 private:
     std::string header() const override
     {
-        std::string names = "t,kinetic_energy,contacts,pairs";
+        std::string names =
+            "t,kinetic_energy,contacts,pairs,particles,rotational_energy,potential_energy,"
+            "momentum_x,momentum_y,momentum_z";
         if (c.world->removes()) names += ",removed,removed_mass";
         for (const char a : {'x', 'y', 'z'})
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
@@ -40,8 +43,10 @@ private:
     {
         const World::Totals totals = w.totals();
         w.check_loads(totals);
-        text +=
-            io::formatted("%.12g,%.9g,%zu,%zu", w.t(), w.kinetic_energy(), totals.contacts, w.candidates());
+        const World::Sums sums = w.sums();
+        text += io::formatted("%.12g,%.9g,%zu,%zu,%zu,%.9g,%.9g", w.t(), sums.kinetic_energy, totals.contacts,
+                              w.candidates(), w.count(), sums.rotational_energy, sums.potential_energy);
+        append(text, sums.momentum);
         if (w.removes())
             text += io::formatted(",%lld,%.9g", static_cast<long long>(w.outflow().count), w.outflow().mass);
         for (const double part : totals.stress) text += io::formatted(",%.9g", part);

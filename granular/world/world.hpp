@@ -245,14 +245,27 @@ public:
         const std::string& bytes, const std::string& run_id, const std::string& file,
         const std::function<void(io::Archive&)>& more = [](io::Archive&) {});
 
-    double kinetic_energy() const;  ///< translational and rotational, of the particles [J]
+    /// Sums over the particles at t
+    struct Sums {
+        double kinetic_energy = 0;     ///< translational and rotational [J]
+        double rotational_energy = 0;  ///< the rotational part [J]
+        /// In gravity along the axes that are not periodic, of the particles that are not fixed; 0 at the
+        /// origin [J]
+        double potential_energy = 0;
+        Vec3 momentum = {0, 0, 0};  ///< linear [kg m/s]
+
+        void add(const Particle& p, const Vec3& gravity);
+        void add(const Sums& part);
+    };
+    Sums sums() const;
+    double kinetic_energy() const { return sums().kinetic_energy; }
     /// Volume of the domain [m³]
     double volume() const
     {
         const Vec3 size = options.high - options.low;
         return size.x * size.y * size.z;
     }
-    Vec3 momentum() const;  ///< linear momentum of the particles [kg m/s]
+    Vec3 momentum() const { return sums().momentum; }
     /// The particles that were removed since the last call of clear_removed(), ordered by time, then by id
     const std::vector<RemovedParticle>& removed() const { return removed_particles; }
     void clear_removed() { removed_particles.clear(); }

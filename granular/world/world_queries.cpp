@@ -59,38 +59,40 @@ std::vector<Particle> World::particles() const
     return all;
 }
 
-double World::kinetic_energy() const
+void World::Sums::add(const Particle& p, const Vec3& gravity)
 {
-    const Particles<par::Cpu>& in = engine->arrays().particle;
-    constexpr std::uint32_t block = 256;
-    // Partial sums over fixed blocks: the result does not depend on the number of threads.
-    std::vector<double> sums((in.count + block - 1) / block);
-    par::for_each(
-        par::Cpu(), sums.size(),
-        [&](std::uint32_t number) {
-            for (std::uint32_t k = number * block; k < std::min((number + 1) * block, in.count); ++k) {
-                const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
-                const Compensation& compensation = in.compensation.data()[k];
-                const Vec3 velocity = to_double(v) + to_double(load_bfloat16(compensation.v)),
-                           omega = to_double(w) + to_double(load_bfloat16(compensation.omega));
-                const double R = v.w,
-                             m = w.w > 0 ? 1 / static_cast<double>(w.w)
-                                         : sphere_mass(R, materials[in.species.data()[k].material].density);
-                sums[number] += 0.5 * m * (velocity.dot(velocity) + 0.4 * R * R * omega.dot(omega));
-            }
-        },
-        8);
-    double T = std::accumulate(sums.begin(), sums.end(), 0.);
-    for (const Particle& p : pending)
-        T += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
-    return T;
+    kinetic_energy += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
+    rotational_energy += 0.2 * p.mass * p.radius * p.radius * p.omega.dot(p.omega);
+    if (!p.fixed) potential_energy -= p.mass * gravity.dot(p.r);
+    momentum += p.mass * p.v;
 }
 
-Vec3 World::momentum() const
+void World::Sums::add(const Sums& part)
 {
-    Vec3 P{0, 0, 0};
-    each_particle([&](const Particle& p) { P += p.mass * p.v; });
-    return P;
+    kinetic_energy += part.kinetic_energy, rotational_energy += part.rotational_energy;
+    potential_energy += part.potential_energy, momentum += part.momentum;
+}
+
+World::Sums World::sums() const
+{
+    const Vec3 gravity = {options.periodic[0] ? 0 : options.gravity.x,
+                          options.periodic[1] ? 0 : options.gravity.y,
+                          options.periodic[2] ? 0 : options.gravity.z};
+    const std::uint32_t count = engine->arrays().particle.count;
+    constexpr std::uint32_t block = 256;
+    // Partial sums over fixed blocks: the result does not depend on the number of threads.
+    std::vector<Sums> of_block((count + block - 1) / block);
+    par::for_each(
+        par::Cpu(), of_block.size(),
+        [&](std::uint32_t number) {
+            for (std::uint32_t k = number * block; k < std::min((number + 1) * block, count); ++k)
+                of_block[number].add(particle_at(k), gravity);
+        },
+        8);
+    Sums all;
+    for (const Sums& part : of_block) all.add(part);
+    for (const Particle& p : pending) all.add(p, gravity);
+    return all;
 }
 
 World::StepLimits World::step_limits(double least_speed) const

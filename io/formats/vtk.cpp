@@ -13,11 +13,34 @@ namespace hilda::io {
 
 namespace {
 
-std::string begin_of_file(const std::string& type, const std::string& attributes = "")
+std::string begin_of_file(const std::string& type, const std::string& of_file = "",
+                          const std::string& attributes = "")
 {
     return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
-           "\" version=\"1.0\" byte_order=\"LittleEndian\"" + attributes + ">\n<" + type + ">\n";
+           "\" version=\"1.0\" byte_order=\"LittleEndian\"" + of_file + ">\n<" + type + attributes + ">\n";
 }
+
+/// An attribute with three pairs or numbers
+template <class Value>
+std::string attribute(const char* name, const Value& value)
+{
+    std::string text = std::string(" ") + name + "=\"";
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (axis > 0) text += ' ';
+        value(text, axis);
+    }
+    return text + '"';
+}
+
+struct Extent {
+    const std::array<int, 3>& cells;
+    void operator()(std::string& text, std::size_t axis) const { text += "0 " + std::to_string(cells[axis]); }
+};
+
+struct Numbers {
+    const std::array<double, 3>& number;
+    void operator()(std::string& text, std::size_t axis) const { append_number(text, number[axis]); }
+};
 
 std::string escaped(const std::string& name)
 {
@@ -33,42 +56,56 @@ std::string escaped(const std::string& name)
 
 }  // namespace
 
-VtkPolyData::VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts)
-    : xml(begin_of_file("PolyData", " header_type=\"UInt64\""))
+VtkFile::VtkFile(std::string of_type, const std::string& attributes, const std::string& of_piece)
+    : type(std::move(of_type)), xml(begin_of_file(type, " header_type=\"UInt64\"", attributes))
 {
-    xml += "<Piece";
-    for (const auto& [name, count] : counts)
-        xml += std::string(" ") + name + "=\"" + std::to_string(count) + '"';
-    xml += ">\n";
+    xml += "<Piece" + of_piece + ">\n";
 }
 
-void VtkPolyData::section(const std::string& name)
+VtkPolyData::VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts)
+    : VtkFile("PolyData", "", [&] {
+          std::string all;
+          for (const auto& [name, count] : counts)
+              all += std::string(" ") + name + "=\"" + std::to_string(count) + '"';
+          return all;
+      }())
+{}
+
+VtkImageData::VtkImageData(const std::array<double, 3>& low, const std::array<double, 3>& edge,
+                           const std::array<int, 3>& cells)
+    : VtkFile("ImageData",
+              attribute("WholeExtent", Extent{cells}) + attribute("Origin", Numbers{low}) +
+                  attribute("Spacing", Numbers{edge}),
+              attribute("Extent", Extent{cells}))
+{}
+
+void VtkFile::section(const std::string& name)
 {
     end_section();
     open_section = name;
     xml += '<' + name + ">\n";
 }
 
-void VtkPolyData::end_section()
+void VtkFile::end_section()
 {
     if (!open_section.empty()) xml += "</" + open_section + ">\n";
     open_section.clear();
 }
 
 template <class Number>
-void VtkPolyData::array(const std::string& name, int components, const std::vector<Number>& values)
+void VtkFile::array(const std::string& name, int components, const std::vector<Number>& values)
 {
     array<Number>(name, components, values.size(), [values](const std::function<void(Number)>& put) {
         for (const Number x : values) put(x);
     });
 }
-template void VtkPolyData::array(const std::string&, int, const std::vector<float>&);
-template void VtkPolyData::array(const std::string&, int, const std::vector<double>&);
-template void VtkPolyData::array(const std::string&, int, const std::vector<std::int32_t>&);
+template void VtkFile::array(const std::string&, int, const std::vector<float>&);
+template void VtkFile::array(const std::string&, int, const std::vector<double>&);
+template void VtkFile::array(const std::string&, int, const std::vector<std::int32_t>&);
 
 template <class Number>
-void VtkPolyData::array(const std::string& name, int components, std::size_t count,
-                        std::function<void(const std::function<void(Number)>&)> numbers)
+void VtkFile::array(const std::string& name, int components, std::size_t count,
+                    std::function<void(const std::function<void(Number)>&)> numbers)
 {
     const std::string type = std::is_integral_v<Number>      ? "Int32"
                              : std::is_same_v<Number, float> ? "Float32"
@@ -89,22 +126,22 @@ void VtkPolyData::array(const std::string& name, int components, std::size_t cou
         append(piece);
     });
 }
-template void VtkPolyData::array(const std::string&, int, std::size_t,
-                                 std::function<void(const std::function<void(float)>&)>);
-template void VtkPolyData::array(const std::string&, int, std::size_t,
-                                 std::function<void(const std::function<void(double)>&)>);
-template void VtkPolyData::array(const std::string&, int, std::size_t,
-                                 std::function<void(const std::function<void(std::int32_t)>&)>);
+template void VtkFile::array(const std::string&, int, std::size_t,
+                             std::function<void(const std::function<void(float)>&)>);
+template void VtkFile::array(const std::string&, int, std::size_t,
+                             std::function<void(const std::function<void(double)>&)>);
+template void VtkFile::array(const std::string&, int, std::size_t,
+                             std::function<void(const std::function<void(std::int32_t)>&)>);
 
-void VtkPolyData::write(const Append& append)
+void VtkFile::write(const Append& append)
 {
     end_section();
-    append(xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_");
+    append(xml + "</Piece>\n</" + type + ">\n<AppendedData encoding=\"raw\">\n_");
     for (const auto& block : blocks) block(append);
     append("\n</AppendedData>\n</VTKFile>\n");
 }
 
-std::string VtkPolyData::text()
+std::string VtkFile::text()
 {
     std::string all;
     write([&](std::string_view piece) { all += piece; });

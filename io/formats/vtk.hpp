@@ -5,6 +5,7 @@
 
 #include "io/files.hpp"
 
+#include <array>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -13,13 +14,9 @@
 
 namespace hilda::io {
 
-/// A file of the type PolyData (.vtp) with one piece. The numbers are binary, after the XML elements
-/// ("appended raw").
-class VtkPolyData {
+/// A file with one piece. The numbers are binary, after the XML elements ("appended raw").
+class VtkFile {
 public:
-    /// counts: attributes of the piece, such as {"NumberOfPoints", 3}
-    explicit VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts);
-
     /// Begins a section: PointData, CellData, Points, Verts, Lines, Polys.
     void section(const std::string& name);
     /// Adds an array to the section, with `components` numbers for each point or cell.
@@ -36,12 +33,31 @@ public:
     /// Ends the file and returns it.
     std::string text();
 
+protected:
+    /// type: PolyData, ImageData. The attributes are those of the element of this name, and of the piece.
+    VtkFile(std::string type, const std::string& attributes, const std::string& of_piece);
+
 private:
     void end_section();
 
-    std::string xml, open_section;
+    std::string type, xml, open_section;
     std::vector<std::function<void(const Append&)>> blocks;  ///< they pass the arrays on
     std::size_t size = 0;                                    ///< of all blocks [byte]
+};
+
+/// A file of the type PolyData (.vtp)
+class VtkPolyData : public VtkFile {
+public:
+    /// counts: attributes of the piece, such as {"NumberOfPoints", 3}
+    explicit VtkPolyData(std::initializer_list<std::pair<const char*, std::size_t>> counts);
+};
+
+/// A file of the type ImageData (.vti): a regular grid. Arrays of cells have x fastest.
+class VtkImageData : public VtkFile {
+public:
+    /// Lower corner, edges and number of the cells along x, y, z
+    VtkImageData(const std::array<double, 3>& low, const std::array<double, 3>& edge,
+                 const std::array<int, 3>& cells);
 };
 
 /// A list of files with their times [s] (.pvd). Successive files with the same time are parts of one frame.

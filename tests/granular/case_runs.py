@@ -60,11 +60,7 @@ class Runs:
     def sha(self, output):
         """SHA-256 of all output that does not depend on wall time"""
         out = self.folder / output
-        files = [out / name for name in ("particles.csv", "contacts.csv", "run.csv")]
-        if (out / "outflow.csv").exists():
-            files.append(out / "outflow.csv")
-        if (out / "vtk").exists():
-            files += [out / "run.pvd"] + sorted((out / "vtk").iterdir())
+        files = [file for pattern in ("*.csv", "*.pvd", "vtk/*") for file in sorted(out.glob(pattern))]
         whole = hashlib.sha256()
         for file in files:
             whole.update(file.name.encode() + b"\0" + file.read_bytes())

@@ -31,8 +31,14 @@ LAWS = [{"between": ["glass", "glass"], "restitution": 0.7, "mu": 0.3, "mu_s": 0
         {"between": ["steel", "steel"], "restitution": 0.6, "normal": {"law": "hertz", "clamped": True}}]
 STEP, STEPS = 3e-6, 400
 GRAINS = {"type": "lattice", "radius": 2e-4, "least_radius": 1.9e-4, "spacing": 1.0, "random_v": 0.3}
+# outputs with lists of contacts, and means over instants between those of the rows
+OUTPUTS = {"contacts": {"interval": STEP * 170, "times": [STEP * 33], "network": True}, "loads": {"interval": STEP * 70, "samples": 17},
+           "fields": [{"name": "means", "low": [0, 0, 0], "high": [0.0085, 0.008, 0.01], "cells": [5, 4, 3], "width": 1e-3,
+                       "interval": STEP * 55, "samples": 6},
+                      {"name": "slice", "low": [0, 0, 0], "high": [0.0085, 0.008, 0.01], "cells": [4, 1, 6], "width": 2e-3,
+                       "kernel": "lucy", "edges": "closed", "interval": STEP * 130}]}
 COMMON = {"step": STEP, "end": STEP * STEPS, "interval": STEP * 30, "frame_interval": STEP * 60, "orientation": True,
-          "materials": MATERIALS, "laws": LAWS}
+          "materials": MATERIALS, "laws": LAWS, **OUTPUTS}
 
 # Small grains, large balls and single particles with a force, fixed and rotating, or attached to a boundary. The grains flow out
 # of the domain; a shaken floor, a rotating cylinder, a rotating plate of triangles and a heavy lid move.
@@ -114,6 +120,11 @@ def check_content(runs, name):
     expect(len(left) > 50, f"{name}: {len(left)} particles leave the domain")
     expect(max(int(row["contacts"]) for row in rows) > 2000, f"{name}: {[row['contacts'] for row in rows]} contacts")
     materials = {p["id"]: p["material"] for p in particles}
+    expect(len(table(runs, "whole", "fields-means.csv")) == 7 * 60 and len(table(runs, "whole", "fields-slice.csv")) == 4 * 24,
+           f"{name}: rows of fields")
+    expect(len(table(runs, "whole", "loads.csv")) == 5, f"{name}: rows of mean loads")
+    times = {row["t"] for row in table(runs, "whole", "contact-lists.csv")}
+    expect(len(times) >= 3, f"{name}: lists of contacts at {times}")
     pairs = {tuple(sorted((materials[c["i"]], materials[c["j"]]))) for c in table(runs, "whole", "contacts.csv")
              if c["boundary"] == "0"}
     expect({("0", "0"), ("0", "1")} <= pairs, f"{name}: contacts of the pairs of materials {pairs}")

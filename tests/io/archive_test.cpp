@@ -128,6 +128,13 @@ TEST_CASE("VTK files have an XML part and raw blocks", "[io][vtk]")
                Contains("Name=\"Points\" NumberOfComponents=\"3\" format=\"appended\" offset=\"12\"/>"));
     CHECK(text.find(std::string("\n_\4\0\0\0\0\0\0\0\7\0\0\0\14\0\0\0", 18)) != std::string::npos);
     CHECK_THAT(text, Catch::EndsWith("</AppendedData>\n</VTKFile>\n"));
+    io::VtkImageData grid({-0.5, 0, 1}, {0.25, 1, 2}, {2, 1, 3});
+    grid.section("CellData");
+    grid.array("density", 1, std::vector<double>(6, 1.5));
+    CHECK_THAT(grid.text(),
+               Contains("<ImageData WholeExtent=\"0 2 0 1 0 3\" Origin=\"-0.5 0 1\" Spacing=\"0.25 1 2\">\n"
+                        "<Piece Extent=\"0 2 0 1 0 3\">\n<CellData>\n"));
+    CHECK_THAT(grid.text(), Contains("</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_"));
     CHECK_THAT(io::vtk_collection({{0, "a"}, {0.1, "a&b.vtp"}, {0.1, "c"}}),
                Contains("<DataSet timestep=\"0.1\" part=\"0\" file=\"a&amp;b.vtp\"/>\n"
                         "<DataSet timestep=\"0.1\" part=\"1\" file=\"c\"/>"));

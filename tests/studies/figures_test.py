@@ -220,6 +220,59 @@ class Figures(unittest.TestCase):
         self.assertEqual(legend_texts(figures["run.png"]), [f"wall{n}" for n in range(2, 10)])
         self.assertIn("not shown: wall1", " ".join(text.get_text() for text in figures["run.png"].texts))
 
+    def granular_run(self):
+        rows = []
+        for k in range(20):
+            row = {"t": 0.01 * k, "kinetic_energy": 1e-3 / (1 + k), "contacts": 0, "pairs": 0, "particles": 5 - k // 10,
+                   "rotational_energy": 1e-4 / (1 + k), "potential_energy": 0.1 * k}
+            row |= {f"momentum_{a}": k for a in "xyz"} | {f"stress_{a}{b}": 0 for a in "xyz" for b in "xyz"}
+            row |= {f"lid_{q}{a}": k * (a == "z") for q in "FT" for a in "xyz"}
+            row |= {f"lid_{q}{a}": 1 + k * (a == "z") for q in ("", "v", "w") for a in "xyz"}
+            rows.append(row)
+        write(self.folder, "run.csv", rows)
+
+    def test_a_granular_run_has_panels_of_momentum_particles_and_the_motion_of_boundaries(self):
+        self.granular_run()
+        figures, _ = draw("granular-run.py", self.folder)
+        self.check(figures["run.png"])
+        # energy, potential energy, momentum, particles, force, torque, displacement, velocity, rotation
+        self.assertEqual(len(figures["run.png"].axes), 9)
+        displacement = figures["run.png"].axes[6]
+        self.assertEqual([text.get_text() for text in displacement.get_legend().get_texts()], ["lid z"])
+        self.assertEqual(list(displacement.lines[0].get_ydata()), list(range(20)))
+
+    def test_fields_are_drawn_as_profiles_or_slices_and_mean_loads_with_bands(self):
+        self.granular_run()
+        names = ["density", "volume_fraction", *(f"{q}_{a}" for q in ("momentum", "velocity", "boundary_force") for a in "xyz"),
+                 *(f"{q}_stress_{a}{b}" for q in ("kinetic", "contact") for a in "xyz" for b in "xyz")]
+
+        def fields(name, nx, ny, nz):
+            rows = [{"t": t, "x": x, "y": y, "z": z} | {n: 0 for n in names} |
+                    {"density": 1000, "volume_fraction": 0.1 * z, "contact_stress_zz": nz - z, "kinetic_stress_zz": 1, "velocity_x": t}
+                    for t in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6) for z in range(nz) for y in range(ny) for x in range(nx)]
+            write(self.folder, f"fields-{name}.csv", rows)
+        fields("profile", 1, 1, 8)
+        fields("slice", 5, 1, 8)
+        fields("solid", 5, 4, 8)
+        loads = [{"t": 0.1 * k} | {f"lid_{q}{a}_{of}": k * (a == "z") for of in ("mean", "std") for q in "FT" for a in "xyz"}
+                 for k in range(1, 5)]
+        write(self.folder, "loads.csv", loads)
+        figures, files = draw("granular-run.py", self.folder)
+        self.assertEqual(files, ["run.png", "loads.png", "fields-profile.png", "fields-slice.png", "fields-solid.png"])
+        for name in files[:3]:
+            self.check(figures[name])
+        for axes in figures["fields-slice.png"].axes:
+            self.assertTrue(axes.collections and not overlapping(axes.xaxis), "a map with legible ticks")
+        self.assertEqual(len(figures["loads.png"].axes), 2)  # Fz and Tz
+        profile = figures["fields-profile.png"].axes
+        self.assertEqual(len(profile), 4)  # volume fraction, velocity, normal stress, variance; no shear stress
+        self.assertEqual(legend_texts(figures["fields-profile.png"]), [f"$t$ = {t} s" for t in (0.1, 0.3, 0.4, 0.6)])
+        self.assertEqual(list(profile[2].lines[-1].get_xdata()), [9 - z for z in range(8)])  # kinetic and contact stress
+        self.assertEqual(len(figures["fields-slice.png"].axes), 16)  # four quantities at four times
+        self.assertEqual(figures["fields-solid.png"]._suptitle.get_text(), "slices at y = 2 m")
+        figures, files = draw("granular-run.py", self.folder, "--quantity", "shear,volume_fraction")
+        self.assertEqual(files, ["fields-profile.png", "fields-slice.png", "fields-solid.png"])
+
     def test_options_that_a_figure_cannot_use_and_unknown_names_are_refused(self):
         convergence_table(self.folder, [4e-3, 2e-3])
         for arguments, expected in ((["--integrator", "rA-half1"], "did you mean 'rA-half-1'?"),

@@ -45,7 +45,7 @@ const std::map<std::string, std::set<std::string>> folders = {
     {"granular",
      {"", "backend", "benchmarks", "case", "cases", "core", "core/neighbours", "core/surfaces",
       "force_models", "force_models/cohesion", "force_models/normal", "force_models/rolling",
-      "force_models/spin", "force_models/tangential", "mesh", "program", "validations", "world"}},
+      "force_models/spin", "force_models/tangential", "insertion", "mesh", "program", "validations", "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},
     {"studies",
      {"", "benchmarks", "experiments", "experiments/chapter3", "experiments/chapter4",

@@ -49,7 +49,12 @@ EVERYTHING = {
     "particles": [{"r": [0, 0, 0], "radius": 0.05, "material": "glass", "v": [0, 0, 1], "omega": [1, 0, 0], "fixed": False,
                    "force": [0, 1, 0], "replica": 0, "orientation": [0.6, 0, 0, -0.8]}],
     "fill": [{"type": "lattice", "low": [0, 0, 0.2], "high": [0.3, 0.3, 0.5], "radius": 0.05, "least_radius": 0.04,
-              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1}]}
+              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1},
+             {"type": "hcp", "low": [-0.6, 0.2, 0.2], "high": [-0.4, 0.4, 0.5], "material": "steel",
+              "sizes": {"type": "lognormal", "median": 0.02, "deviation": 0.1, "least_radius": 0.015, "largest_radius": 0.03,
+                        "by": "mass"}},
+             {"type": "lattice", "low": [-0.2, -0.8, 0.2], "high": [0.2, -0.6, 0.5], "material": "steel",
+              "sizes": {"type": "table", "radii": [0.02, 0.03], "passing": [0, 1]}}]}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
@@ -81,6 +86,10 @@ BY_THE_PROGRAM = [
     ("/fill/0", {"type": "lattice", "low": [0, 0, 0], "high": [1, 1, 1], "radius": 1e-5, "material": "steel"},
      "/fill: 1.08e+14 particles need about "),
     ("/fill/0", {"type": "csv", "file": "none.csv", "material": "steel"}, "/fill/0/file: none.csv: does not exist"),
+    ("/fill/1/sizes/least_radius", 0.04, "/fill/1/sizes/least_radius: least_radius must not be above largest_radius"),
+    ("/fill/2/sizes/radii", [0.03, 0.02], "/fill/2/sizes/radii/1: radii must be positive and ascending"),
+    ("/fill/2/sizes/passing", [0, 0.5], "/fill/2/sizes/passing/1: passing must be 1 at the largest radius"),
+    ("/fill/2/sizes/passing", MISSING, "/fill/2/sizes/radii: a table must have either fractions or passing, got none"),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: high must be at least a diameter, 0.1, above low, 0, got 0.05"),
     ("/step", 0.1, "/step: step must not be above"),
 ]
@@ -184,6 +193,17 @@ BY_BOTH = [
     ("/fill/0/count", -1, "/fill/0/count: count must be an integer from 0 to 2^53"),
     ("/fill/0/count", 1.5, "/fill/0/count: count must be an integer from 0 to 2^53"),
     ("/fill/0/random_v", -1, "/fill/0/random_v: random_v must not be negative"),
+    ("/fill/0/sizes", {"type": "uniform", "least_radius": 0.01, "largest_radius": 0.02},
+     "/fill/0/radius: radius must not be given together with sizes"),
+    ("/fill/1/sizes", MISSING, "/fill/1: missing key 'radius'"),
+    ("/fill/1/sizes/type", "gauss", "/fill/1/sizes/type: unknown type"),
+    ("/fill/1/sizes/by", "volume", "/fill/1/sizes/by: unknown by \"volume\""),
+    ("/fill/1/sizes/median", MISSING, "/fill/1/sizes: missing key 'median'"),
+    ("/fill/1/sizes/median", 0, "/fill/1/sizes/median: median must be positive"),
+    ("/fill/1/sizes/deviation", 4, "/fill/1/sizes/deviation: deviation must be at most 3"),
+    ("/fill/1/sizes/mean", 1, "/fill/1/sizes/mean: unknown key \"mean\""),
+    ("/fill/2/sizes/radii", [], "/fill/2/sizes/radii: radii must have a number at least"),
+    ("/fill/2/sizes/radii", [0, 1], "/fill/2/sizes/radii/0: radii must be positive and ascending"),
     ("/fill/0/number", 1, "/fill/0/number: unknown key \"number\""),
 ]
 

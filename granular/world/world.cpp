@@ -205,7 +205,7 @@ void World::rebuild_neighbours()
 void World::find_neighbours() const
 {
     if (laws_changed) {
-        check_laws(particles());
+        check_laws({});
         engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
     }
     laws_changed = false;

@@ -54,7 +54,14 @@ EVERYTHING = {
               "sizes": {"type": "lognormal", "median": 0.02, "deviation": 0.1, "least_radius": 0.015, "largest_radius": 0.03,
                         "by": "mass"}},
              {"type": "lattice", "low": [-0.2, -0.8, 0.2], "high": [0.2, -0.6, 0.5], "material": "steel",
-              "sizes": {"type": "table", "radii": [0.02, 0.03], "passing": [0, 1]}}]}
+              "sizes": {"type": "table", "radii": [0.02, 0.03], "passing": [0, 1]}}],
+    "insert": [{"name": "feed", "rate": 1e4, "from": 0, "to": 1, "interval": 1e-5, "radius": 0.02, "least_radius": 0.01, "v": [0, 0, -1],
+                "random_v": 0.1, "material": "glass", "replica": 0, "on_overlap": "postpone", "tries": 1000, "seed": 3, "count": 50,
+                "region": {"type": "cylinder", "r": [0, 0, 0.7], "axis": [0, 0, 1], "radius": 0.3, "length": 0.2}},
+               {"mass_rate": 20, "material": "steel", "sizes": {"type": "uniform", "least_radius": 0.01, "largest_radius": 0.02},
+                "region": {"type": "disk", "r": [0, 0, 1], "normal": [0, 0, 1], "radius": 0.2}},
+               {"count": 3, "material": "steel", "radius": 0.01,
+                "region": {"type": "box", "low": [0, 0, 1.1], "high": [0.1, 0.1, 1.2]}}]}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
@@ -90,6 +97,14 @@ BY_THE_PROGRAM = [
     ("/fill/2/sizes/radii", [0.03, 0.02], "/fill/2/sizes/radii/1: radii must be positive and ascending"),
     ("/fill/2/sizes/passing", [0, 0.5], "/fill/2/sizes/passing/1: passing must be 1 at the largest radius"),
     ("/fill/2/sizes/passing", MISSING, "/fill/2/sizes/radii: a table must have either fractions or passing, got none"),
+    ("/insert/0/to", 0, "/insert/0/to: to must be after from, 0, got 0"),
+    ("/insert/2/name", "feed", "/insert/2/name: two insertions have the same name, got \"feed\""),
+    ("/insert/2", {"rate": 1e18, "material": "steel", "radius": 0.01,
+                   "region": {"type": "box", "low": [0, 0, 1.1], "high": [0.1, 0.1, 1.2]}}, "/insert: 2e+13 particles need about "),
+    ("/insert/2/material", "wood", "/insert/2/material: no material has this name"),
+    ("/insert/2/region/high/1", 0.01, "/insert/2/region/high/1: high must be at least a diameter, 0.02, above low, 0, got 0.01"),
+    ("/insert/0/region/length", 0.03, "/insert/0/region/length: length must be at least 0.04, so that the largest particle has place"),
+    ("/insert/0/region/r/2", 1.9, "/insert/0/region: region must be within the domain along z, got a cylinder of radius 0.3"),
     ("/fill/0/high/1", 0.05, "/fill/0/high/1: high must be at least a diameter, 0.1, above low, 0, got 0.05"),
     ("/step", 0.1, "/step: step must not be above"),
 ]
@@ -204,6 +219,19 @@ BY_BOTH = [
     ("/fill/1/sizes/mean", 1, "/fill/1/sizes/mean: unknown key \"mean\""),
     ("/fill/2/sizes/radii", [], "/fill/2/sizes/radii: radii must have a number at least"),
     ("/fill/2/sizes/radii", [0, 1], "/fill/2/sizes/radii/0: radii must be positive and ascending"),
+    ("/insert/0/mass_rate", 1, "/insert/0/mass_rate: mass_rate must not be given together with rate"),
+    ("/insert/2/count", MISSING, "/insert/2: one of the keys rate, mass_rate and count is required"),
+    ("/insert/2/count", 0, "/insert/2/count: count must be positive"),
+    ("/insert/2/to", 1, "/insert/2/to: to must be given together with rate or mass_rate only"),
+    ("/insert/0/from", -1, "/insert/0/from: from must not be negative"),
+    ("/insert/0/interval", 0, "/insert/0/interval: interval must be positive"),
+    ("/insert/0/on_overlap", "delete", "/insert/0/on_overlap: unknown on_overlap"),
+    ("/insert/0/tries", 100, "/insert/0/tries: tries must be at least 200"),
+    ("/insert/0/region", MISSING, "/insert/0: missing key 'region'"),
+    ("/insert/0/region/type", "ball", "/insert/0/region/type: unknown type"),
+    ("/insert/1/region/axis", [0, 0, 1], "/insert/1/region/axis: unknown key \"axis\""),
+    ("/insert/2/speed", 1, "/insert/2/speed: unknown key \"speed\""),
+    ("/insert/2/radius", MISSING, "/insert/2: missing key 'radius'"),
     ("/fill/0/number", 1, "/fill/0/number: unknown key \"number\""),
 ]
 

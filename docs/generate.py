@@ -191,6 +191,8 @@ class SchemaPage:
                         self.find(self.target(child), level)
                 return
             self.sections.append((level, title, node))
+            if level == 3:  # its group adds what it contains, after all variants
+                return
         for variant in self.variants(node):
             self.find(variant, 3)
         for value, _ in self.keys(node).values():

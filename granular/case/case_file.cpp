@@ -57,8 +57,8 @@ void read_domain(ObjectReader domain, WorldOptions& o)
 /// Particles are inserted and outputs are written in pieces, so that the host needs little more than the
 /// arrays of the world. A table of contacts is sorted in memory; a settled bed has 2.3 contacts per particle.
 void check_memory(const io::JsonSource& source, double particles, double largest, const WorldOptions& o,
-                  bool rotation_laws, const std::vector<FillSpec>& fills, const OutputSpecs& outputs,
-                  const Environment& available)
+                  bool rotation_laws, const std::vector<FillSpec>& fills, double inserted,
+                  const OutputSpecs& outputs, const Environment& available)
 {
     constexpr double gigabyte = 1e9, of_output = 8, of_contacts = 2 * 2.3 * sizeof(ContactRecord),
                      of_cell = 4;
@@ -70,6 +70,10 @@ void check_memory(const io::JsonSource& source, double particles, double largest
         largest = std::max(largest, 2 * f.radius);
         replicas = std::max(replicas, f.replica);
     }
+    // An inserted particle is in the arrays, and in a copy while others are inserted.
+    constexpr double of_copy = 2 * sizeof(Particle);
+    const double own = particles;
+    particles += inserted;
     const Vec3 size = o.high - o.low;
     const double edge = largest * (1 + o.skin),
                  cells = (size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) * (replicas + 1.);
@@ -84,26 +88,32 @@ void check_memory(const io::JsonSource& source, double particles, double largest
                       many, of, many * each / gigabyte, where, static_cast<double>(have) / gigabyte);
         source.fail(place, what);
     };
-    check("/fill", particles, "particles",
-          in_world(Device::cpu) + of_output + (available.lists_contacts ? of_contacts : 0), available.memory,
-          "");
-    check("/fill", particles, "particles", in_world(Device::cuda), available.device_memory, " of the GPU");
+    const char* const place = inserted > own ? "/insert" : "/fill";
+    check(place, particles, "particles",
+          in_world(Device::cpu) + of_output + (available.lists_contacts ? of_contacts : 0) +
+              (inserted > 0 ? of_copy : 0),
+          available.memory, "");
+    check(place, particles, "particles", in_world(Device::cuda), available.device_memory, " of the GPU");
     check("/fields", of_fields, "cells", FieldSums::bytes_of_cell(), available.memory, "");
     if (particles > 0)
         check("/domain", cells, "cells", of_cell, std::min(available.memory, available.device_memory), "");
 }
 
-void seed_fills(Case& c, std::uint64_t seed)
+/// Sets the seeds of the fills, then those of the insertions.
+void set_seeds(Case& c, std::uint64_t seed)
 {
-    const io::Json::Member* fill = c.source.root.member("fill");
-    const std::size_t fills = fill != nullptr ? fill->value.size() : 0;
-    if (fills == 0) c.notices.emplace_back("--seed has no effect: the case has no fill");
-    for (std::size_t k = 0; k < fills; ++k) {
-        const io::Json& one = fill->value.list() != nullptr ? fill->value.at(k) : fill->value;
-        if (one.members() != nullptr && one.member("file") == nullptr)
-            c.source.set("/fill/" + std::to_string(k) + "/seed=" + std::to_string(seed + k),
-                         "--seed " + std::to_string(seed));
+    std::size_t set = 0;
+    for (const std::string key : {"fill", "insert"}) {
+        const io::Json::Member* entries = c.source.root.member(key);
+        const std::size_t number = entries != nullptr ? entries->value.size() : 0;
+        for (std::size_t k = 0; k < number; ++k, ++set) {
+            const io::Json& one = entries->value.list() != nullptr ? entries->value.at(k) : entries->value;
+            if (one.members() != nullptr && one.member("file") == nullptr)
+                c.source.set('/' + key + '/' + std::to_string(k) + "/seed=" + std::to_string(seed + set),
+                             "--seed " + std::to_string(seed));
+        }
     }
+    if (set == 0) c.notices.emplace_back("--seed has no effect: the case has no fill");
 }
 
 class CaseReader {
@@ -125,14 +135,18 @@ public:
         for (ObjectReader& b : o.objects("boundaries")) boundary(b);
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
+        for (ObjectReader& i : o.objects("insert")) insertion(i);
         out.outputs = read_outputs(o, world);
         o.finish();
         check_mesh_sizes();
         check_widths();
+        double inserted = 0;
+        if (out.insertions != nullptr)
+            for (const Insertion& i : out.insertions->all) inserted += i.what().largest_count(out.end);
         Environment available = environment;
         available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
         check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
-                     fills, out.outputs, available);
+                     fills, inserted, out.outputs, available);
         double all = 0;
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));
@@ -144,6 +158,7 @@ public:
             std::vector<Particle>().swap(fills[k].particles);
         }
         start_motions();
+        if (out.insertions != nullptr) out.insertions->start(*out.world, out.end);
     }
 
 private:
@@ -341,6 +356,34 @@ private:
         fill_places.push_back(o);
     }
 
+    void insertion(ObjectReader& o)
+    {
+        if (out.insertions == nullptr) out.insertions = std::make_shared<Insertions>();
+        std::vector<Insertion>& all = out.insertions->all;
+        InsertionSpec spec =
+            read_insertion(o, "insertion " + std::to_string(all.size()), out.h, world.gravity);
+        for (const Insertion& other : all)
+            if (other.what().name == spec.name)
+                o.fail("name", "two insertions have the same name, got " + io::described(spec.name));
+        spec.material = material(o);
+        spec.density = materials[static_cast<std::size_t>(spec.material)].density;
+        spec.replica = replica(o);
+        const auto [low, high] = spec.region.bounds(spec.sizes.largest());
+        const Vec3 from = world.low, to = world.high;
+        for (const auto& [axis, inside] : {std::pair{'x', low.x >= from.x && high.x <= to.x},
+                                           {'y', low.y >= from.y && high.y <= to.y},
+                                           {'z', low.z >= from.z && high.z <= to.z}})
+            if (!inside)
+                o.fail("region", std::string("region must be within the domain along ") + axis + ", got a " +
+                                     spec.region.description());
+        o.finish();
+        largest = std::max(largest, 2 * spec.sizes.largest());
+        o.located([&] {  // refuses particles that the world refuses
+            for (const Particle& p : spec.samples()) World(world, materials).expect({p}, 0);
+        });
+        all.emplace_back(spec);
+    }
+
     /// Adds the particles of a fill. A message about a particle of a table has its line.
     void add_filled(const FillSpec& spec) const
     {
@@ -397,7 +440,7 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     out.source.rename("checkpoint_every", "checkpoint_interval");
     for (const Setting& setting : environment.settings) out.source.set(setting.change, setting.origin);
     out.notices = out.source.notices;
-    if (environment.seed) seed_fills(out, *environment.seed);
+    if (environment.seed) set_seeds(out, *environment.seed);
     if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
     CaseReader(out, environment).read();
     out.source.remove(key_without_effect);

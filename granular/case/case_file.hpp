@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/case/output_spec.hpp"
+#include "granular/insertion/insertion.hpp"
 #include "granular/world/world.hpp"
 #include "io/json_source.hpp"
 
@@ -21,6 +22,7 @@ struct Setting {
 struct Case {
     io::JsonSource source;
     std::string name = {};
+    std::shared_ptr<Insertions> insertions = {};  ///< nullptr if there are none; outlives the world
     std::unique_ptr<World> world = {};
     double h = 0, end = 0;      ///< step and end time [s]
     double interval = 0;        ///< time between rows of run.csv [s]

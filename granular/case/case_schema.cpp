@@ -5,6 +5,7 @@
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/fill.hpp"
 #include "granular/case/pair_keys.hpp"
+#include "granular/insertion/sizes.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -133,6 +134,19 @@ void set_law_definitions(io::Json& definitions)
     definitions["law"]["allOf"] = conditions;
 }
 
+/// Sets the definitions of the size distributions, which have a prefix because other types have their names.
+void set_size_definitions(io::Json& definitions)
+{
+    io::Json references = io::Json::array();
+    for (const SizeType& type : io::Registry<SizeType>::all()) {
+        const std::string name = "sizes_" + type.name;
+        references.push_back({{"$ref", "#/$defs/" + name}});
+        definitions[name] = io::definition({"Size distribution", "type", "Type of the distribution."},
+                                           type.name, type.schema);
+    }
+    definitions["sizes"]["oneOf"] = references;
+}
+
 }  // namespace
 
 io::Json case_schema()
@@ -142,6 +156,7 @@ io::Json case_schema()
     set_law_definitions(definitions);
     io::set_one_of<BoundaryType>(definitions, "boundary", {"Boundary", "type", "Type of the boundary."});
     io::set_one_of<FillType>(definitions, "fill", {"Fill", "type", "Type of the fill."});
+    set_size_definitions(definitions);
     io::Json integrators = io::Json::array();
     for (const char* name : scheme_names) integrators.push_back(name);
     schema["properties"]["integrator"]["enum"] = integrators;

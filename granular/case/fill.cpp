@@ -10,13 +10,8 @@ FillSpec read_filled_box(ObjectReader& o)
 {
     FillSpec f;
     f.low = o.vec3("low"), f.high = o.vec3("high");
-    f.radius = o.positive("radius");
-    f.least_radius = o.number("least_radius", f.radius);
-    if (f.least_radius > 0 && f.least_radius <= f.radius)
-        o.positive("least_radius", f.radius);  // in single precision
-    else
-        o.fail("least_radius", "least_radius must be positive and not greater than radius, got " +
-                                   io::shortest(f.least_radius));
+    f.sizes = read_radius(o);
+    f.radius = f.sizes.largest();
     const double spacing = o.number("spacing", 1.05);
     if (!(spacing >= 1))
         o.fail("spacing", "spacing must be at least 1 diameter, got " + io::shortest(spacing));
@@ -67,7 +62,7 @@ void fill(const FillSpec& f, const std::function<void(const Particle&)>& use)
     const double free = f.jitter * (f.spacing / 2 - f.radius) / std::sqrt(3.);
     for (const Vec3& r : places) {
         Particle p;
-        p.radius = random.number(f.least_radius, f.radius);
+        p.radius = f.sizes.draw(random);
         p.material = f.material, p.replica = f.replica, p.attached_to = f.attached_to;
         p.r = r + Vec3{random.number(-free, free), random.number(-free, free), random.number(-free, free)};
         p.r = {std::clamp(p.r.x, low.x, high.x), std::clamp(p.r.y, low.y, high.y),

@@ -5,6 +5,7 @@
 
 #include "granular/case/object_reader.hpp"
 #include "granular/case/split_mix.hpp"
+#include "granular/insertion/sizes.hpp"
 #include "io/type_schema.hpp"
 
 #include <functional>
@@ -17,7 +18,8 @@ struct FillType;
 struct FillSpec {
     const FillType* type = nullptr;
     Vec3 low = {0, 0, 0}, high = {0, 0, 0};  ///< corners of the box that contains the spheres [m]
-    double radius = 0, least_radius = 0;     ///< radii are uniformly distributed between the two [m]
+    double radius = 0;                       ///< the largest one [m]
+    Sizes sizes = Sizes();                   ///< of the particles that are not from a table
     double spacing = 0;                      ///< distance of neighbouring centres [m]
     double jitter = 0;          ///< random displacement over the largest one without contact, in [0, 1]
     std::size_t max_count = 0;  ///< largest number of particles; 0: no limit

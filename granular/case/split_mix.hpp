@@ -39,7 +39,6 @@ public:
         return {across * std::cos(angle), across * std::sin(angle), z};
     }
 
-private:
     std::uint64_t state;
 };
 

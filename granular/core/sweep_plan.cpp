@@ -105,7 +105,8 @@ void SweepPlan::make(const Particles<par::Cpu>& particles, Pairs<par::Cpu>& pair
     sort(
         false, blocks, [&](std::uint32_t j) { return j / block; }, late_start, late);
 
-    sum_j.resize(n), torque_j.resize(pairs.rotation_history.size() > 0 ? n : 0);
+    // also with a list that has no pairs now: the sweep rotates particles once there has been a history
+    sum_j.resize(n), torque_j.resize(pairs.rotation_history.data() != nullptr ? n : 0);
     par::fill(par::Cpu(), sum_j.data(), sum_j.size(), Load{});
     par::fill(par::Cpu(), torque_j.data(), torque_j.size(), Float4{});
 }

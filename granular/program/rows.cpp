@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// run.csv: energies, momentum, contacts, stress, the loads on the boundaries and the motion of those that
-/// move.
+/// run.csv: energies, momentum, contacts, mass flow, stress, the loads on the boundaries and the motion of
+/// those that move.
 
 #include "granular/program/sink.hpp"
 #include "io/message.hpp"
+
+#include <cmath>
 
 namespace hilda::granular {
 
@@ -16,14 +18,28 @@ public:
     {}
 
     long interval() const override { return steps; }
+    void transfer(io::Archive& a) override
+    {
+        RowsSink::transfer(a);
+        a.value(last);
+        a.check(std::isfinite(last.t) && std::isfinite(last.inserted) && std::isfinite(last.removed),
+                "the numbers of the last row must be finite, got " +
+                    io::formatted("t = %g, %g kg, %g kg", last.t, last.inserted, last.removed));
+    }
 
 private:
+    /// Time and masses of the last row, for the mass flow of the next one
+    struct Flow {
+        double t = 0, inserted = 0, removed = 0;  // [s, kg, kg]
+    };
+
     std::string header() const override
     {
         std::string names =
             "t,kinetic_energy,contacts,pairs,particles,rotational_energy,potential_energy,"
             "momentum_x,momentum_y,momentum_z";
-        if (c.world->removes()) names += ",removed,removed_mass";
+        if (c.insertions != nullptr) names += ",inserted,inserted_mass,inserted_mass_rate";
+        if (c.world->removes()) names += ",removed,removed_mass,removed_mass_rate";
         for (const char a : {'x', 'y', 'z'})
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
         for (const std::string& b : c.boundaries)
@@ -47,8 +63,7 @@ private:
         text += io::formatted("%.12g,%.9g,%zu,%zu,%zu,%.9g,%.9g", w.t(), sums.kinetic_energy, totals.contacts,
                               w.candidates(), w.count(), sums.rotational_energy, sums.potential_energy);
         append(text, sums.momentum);
-        if (w.removes())
-            text += io::formatted(",%lld,%.9g", static_cast<long long>(w.outflow().count), w.outflow().mass);
+        append_flow(text, w);
         for (const double part : totals.stress) text += io::formatted(",%.9g", part);
         for (const Wrench& on : totals.on_boundary)
             for (const Vec3& part : {on.F, on.T}) append(text, part);
@@ -65,6 +80,19 @@ private:
     /// Whether Euler parameters are integrated for a moving boundary
     static bool has_orientation(const Boundary& b) { return b.shape == Boundary::Shape::mesh || b.mass > 0; }
 
+    /// Number, mass and mass flow since the last row of the inserted and removed particles
+    void append_flow(std::string& text, const World& w)
+    {
+        const Flow now{w.t(), c.insertions != nullptr ? c.insertions->mass() : 0, w.outflow().mass};
+        const auto add = [&](std::int64_t count, double mass, double before) {
+            const double rate = now.t > last.t ? (mass - before) / (now.t - last.t) : 0;
+            text += io::formatted(",%lld,%.9g,%.9g", static_cast<long long>(count), mass, rate);
+        };
+        if (c.insertions != nullptr) add(c.insertions->count(), now.inserted, last.inserted);
+        if (w.removes()) add(w.outflow().count, now.removed, last.removed);
+        last = now;
+    }
+
     static void append(std::string& text, const Vec3& a)
     {
         text += io::formatted(",%.9g,%.9g,%.9g", a.x, a.y, a.z);
@@ -72,6 +100,7 @@ private:
 
     const Case& c;
     const long steps;
+    Flow last;
 };
 
 const bool registered = io::Registry<SinkType>::add(

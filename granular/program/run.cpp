@@ -107,6 +107,7 @@ private:
             c.world->from_bytes(bytes, id, from, [&](io::Archive& a) {
                 io::Sinks<CaseSetup>::Saved saved_sinks;
                 a.map(saved_sinks);
+                transfer_insertions(a);
                 sinks.open(saved_sinks, from);
             });
             const long most = std::max(earlier.end, steps);
@@ -137,6 +138,7 @@ private:
             if (resumed && earlier.end != steps) begin_other_end();
             while (w.steps() < steps && io::Interrupt::caught() == 0) {
                 w.step();
+                particle_steps += static_cast<double>(w.count());
                 if (w.watch().warnings != known_warnings)
                     report_watch(w.watch(), known_warnings, o.strict, [&](const std::string& text) {
                         line.clear();
@@ -230,6 +232,7 @@ private:
                               ": the case has changed during the run; the state before the failure "
                               "cannot be computed again");
         c.world = std::move(again.world);  // releases the memory of the world that has failed
+        c.insertions = std::move(again.insertions);
         start();
         sinks = io::Sinks<CaseSetup>(setup);
         rows = 0;
@@ -258,7 +261,14 @@ private:
     /// Passes the state of the run on in pieces.
     void write_state(io::Sinks<CaseSetup>::Saved saved_sinks, const io::Append& append) const
     {
-        c.world->write(id, append, [&](io::Archive& a) { a.map(saved_sinks); });
+        c.world->write(id, append, [&](io::Archive& a) {
+            a.map(saved_sinks);
+            transfer_insertions(a);
+        });
+    }
+    void transfer_insertions(io::Archive& a) const
+    {
+        if (c.insertions != nullptr) c.insertions->transfer(a);
     }
 
     void save()
@@ -276,15 +286,15 @@ private:
         const double rate_now = rate();
         const double left =
             rate_now > 0 ? (c.end - w.t()) / c.h * static_cast<double>(w.count()) / rate_now : 0;
-        return io::formatted("t = %.4g of %.4g s, %.3g million particle-steps/s, %.0f s left", w.t(), c.end,
-                             1e-6 * rate_now, left);
+        const std::string grains = has_flow() ? io::formatted("%zu particles, ", w.count()) : "";
+        return io::formatted("t = %.4g of %.4g s, %s%.3g million particle-steps/s, %.0f s left", w.t(), c.end,
+                             grains.c_str(), 1e-6 * rate_now, left);
     }
 
-    double rate() const  ///< [particle-steps/s]
-    {
-        return static_cast<double>(c.world->steps() - resumed_at) * static_cast<double>(c.world->count()) /
-               seconds_since(begin);
-    }
+    /// Whether the number of particles changes
+    bool has_flow() const { return c.insertions != nullptr || c.world->removes(); }
+
+    double rate() const { return particle_steps / seconds_since(begin); }  ///< [particle-steps/s]
 
     /// Writes the remaining outputs, and of a complete run checkpoint.end: the state from which a run to a
     /// later end continues.
@@ -323,6 +333,14 @@ private:
         s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", rows}, {"t", w.t()}};
         if (w.removes())
             s["outflow"] = {{"particles", static_cast<long>(w.outflow().count)}, {"mass", w.outflow().mass}};
+        if (c.insertions != nullptr) {
+            io::Json all = io::Json::array();
+            for (const Insertion& i : c.insertions->all)
+                all.push_back({{"name", i.what().name},
+                               {"particles", static_cast<long>(i.count())},
+                               {"mass", i.mass()}});
+            s["insertions"] = all;
+        }
         s["kinetic_energy"] = w.kinetic_energy();
         s["watch"] = watch_summary(w.watch());
         s["files"] = sinks.files();
@@ -347,6 +365,7 @@ private:
     long rows = 0;                    ///< of run.csv
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0;
+    double particle_steps = 0;        ///< since then
     std::int64_t known_warnings = 0;  ///< of the watch, which were reported
     EarlierRun earlier;
     std::string message, status = "ok";

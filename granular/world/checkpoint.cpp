@@ -261,6 +261,7 @@ void World::transfer(io::Archive& a)
     a.value(rebuild_count), a.value(max_speed);
     a.check(std::isfinite(max_speed) && max_speed >= 0, "invalid largest speed, got " + shown(max_speed));
     a.value(domain);
+    if (a.reads()) has_domain = domain.largest > 0;
     if (const std::string found = a.reads() ? fault(domain, options) : ""; !found.empty())
         a.check(false, found);
     a.value(record);

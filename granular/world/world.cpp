@@ -90,7 +90,8 @@ int World::add_boundary(const Boundary& b)
         refuse("boundary", "the radius must be positive", b.radius);
     if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
         refuse("boundary", "the length of axis must be 1", b.axis.norm());
-    if (!(b.mass >= 0) || !std::isfinite(b.mass)) refuse("boundary", "the mass must be finite and not negative", b.mass);
+    if (!(b.mass >= 0) || !std::isfinite(b.mass))
+        refuse("boundary", "the mass must be finite and not negative", b.mass);
     if (!b.inertia.is_zero() && !is_inertia(b.inertia))
         refuse(
             "boundary",
@@ -210,7 +211,7 @@ void World::rebuild_neighbours()
 void World::find_neighbours() const
 {
     if (laws_changed) {
-        check_laws(particles());
+        check_laws({});
         engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
     }
     laws_changed = false;

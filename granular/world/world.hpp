@@ -151,6 +151,10 @@ public:
     /// it is inserted during a run, schemes that use the previous acceleration start it with that of
     /// gravity.
     std::uint32_t add(const Particle& particle);
+    /// Announces particles that are added during the run, at most this number, with the radii, materials and
+    /// replicas of the samples. The cells are made for them, and step_limits(), the check of the laws and the
+    /// memory that is reserved by the first insertion include them. Throws io::InvalidInput.
+    void expect(const std::vector<Particle>& samples, std::size_t particles);
     /// Reserves memory for further particles.
     void reserve(std::size_t particles) { pending.reserve(pending.size() + particles); }
 
@@ -219,6 +223,7 @@ public:
     /// Lower and upper corner of the domain [m]
     const Vec3& low() const { return options.low; }
     const Vec3& high() const { return options.high; }
+    const std::array<bool, 3>& periodic() const { return options.periodic; }
     /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
     /// Throws io::InvalidInput.
     void set_force(std::uint32_t id, const Vec3& F);
@@ -330,18 +335,24 @@ private:
     void transfer(io::Archive& a);
     void transfer_particles(io::Archive& a);
     void restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build);
-    void insert_pending();
-    void insert(const std::vector<Particle>& all);
-    Particle particle_at(std::uint32_t k) const;
-    Domain domain_of(const std::vector<Particle>& all) const;
-    bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
-    [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;
     struct CellPosition {
         Position position;
         Vec<float> remainder;  ///< position minus its whole units [units]
     };
-    std::vector<CellPosition> cell_positions(const Domain& in, const std::vector<Particle>& all) const;
-    void check_laws(const std::vector<Particle>& all) const;
+    Particle checked(const Particle& p, const std::string& where) const;
+    bool fits(const std::vector<Particle>& all) const;
+    void insert_pending();
+    void insert(const std::vector<Particle>& all);
+    void append_pending();
+    void write_particle(std::uint32_t k, const Particle& particle, const CellPosition& at);
+    void end_insertion(const std::vector<Particle>& all);
+    Particle particle_at(std::uint32_t k) const;
+    Domain domain_of(const std::vector<Particle>& all) const;
+    bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
+    [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;
+    std::vector<CellPosition> cell_positions(const Domain& in, const std::vector<Particle>& all,
+                                             std::size_t first_new) const;
+    void check_laws(const std::vector<Particle>& added) const;
     void check_overlaps(std::uint32_t first) const;
     struct CurrentLoads;
     template <class F>
@@ -393,10 +404,17 @@ private:
     std::vector<Wrench> tool_loads;  ///< contact loads on the boundaries with a mass, at t_n
     std::vector<Float4> forces;      ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;   ///< particles added since the last insertion
+    struct Expected {
+        std::vector<Particle> samples;
+        std::size_t particles;
+    };
+    std::vector<Expected> expected;  ///< see expect()
+    std::size_t reserved = 0;        ///< number of particles for which the first insertion reserves memory
     std::vector<std::function<void(World&)>> callbacks;
 
     std::unique_ptr<Engine> engine;
     Domain domain;
+    bool has_domain = false;  ///< whether the cells have been made
     std::size_t inserted_count = 0;
     std::uint32_t next_id = 0;  ///< of the next particle that is inserted
     std::vector<RemovedParticle> removed_particles;

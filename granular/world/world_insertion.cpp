@@ -14,10 +14,9 @@ namespace hilda::granular {
 
 using namespace detail;
 
-std::uint32_t World::add(const Particle& p)
+/// The particle with its mass, and fixed if it is attached. Throws io::InvalidInput if it is not valid.
+Particle World::checked(const Particle& p, const std::string& where) const
 {
-    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
-    const std::string where = "particle " + std::to_string(id);
     // Radius, velocities, mass and its inverse are stored in single precision.
     constexpr double least = std::numeric_limits<float>::min(), most = std::numeric_limits<float>::max();
     if (!(p.radius > 0) || !std::isfinite(p.radius)) refuse(where, "the radius must be positive", p.radius);
@@ -43,10 +42,35 @@ std::uint32_t World::add(const Particle& p)
         refuse(where, "no boundary has this number", p.attached_to);
     if (p.attached_to >= 0 && boundaries[static_cast<std::size_t>(p.attached_to)].mass > 0)
         refuse(where, "must not be attached to a boundary with a mass; boundary", p.attached_to);
-    pending.push_back(p);
-    pending.back().mass = mass, pending.back().id = id;
-    if (p.attached_to >= 0) pending.back().fixed = true;
+    Particle valid = p;
+    valid.mass = mass;
+    if (p.attached_to >= 0) valid.fixed = true;
+    return valid;
+}
+
+std::uint32_t World::add(const Particle& p)
+{
+    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
+    pending.push_back(checked(p, name_of(id)));
+    pending.back().id = id;
     return id;
+}
+
+void World::expect(const std::vector<Particle>& samples, std::size_t particles)
+{
+    Expected of{{}, particles};
+    for (const Particle& p : samples) of.samples.push_back(checked(p, "expected particle"));
+    if (!of.samples.empty()) expected.push_back(of);
+}
+
+/// Whether the cells are made for particles that include these
+bool World::fits(const std::vector<Particle>& all) const
+{
+    return std::all_of(all.begin(), all.end(), [&](const Particle& p) {
+        const auto radius = static_cast<float>(p.radius);
+        return radius <= domain.largest && p.replica < domain.replicas &&
+               (domain.radius == 0 || radius == domain.radius);
+    });
 }
 
 namespace {
@@ -78,18 +102,25 @@ double cell_diameter(const std::vector<double>& sorted, double skin)
 
 }  // namespace
 
-/// Cell grid for these particles. Throws io::InvalidInput.
+/// Cell grid for these particles and the expected ones. Throws io::InvalidInput.
 Domain World::domain_of(const std::vector<Particle>& all) const
 {
     Domain in;
     CellGrid& grid = in.grid;
-    in.radius = static_cast<float>(all[0].radius);
+    in.radius = static_cast<float>(all.empty() ? expected[0].samples[0].radius : all[0].radius);
     std::vector<double> diameters;
-    for (const Particle& p : all) {
-        diameters.push_back(2 * p.radius);
+    const auto include = [&](const Particle& p, std::size_t times) {
+        diameters.insert(diameters.end(), times, 2 * p.radius);
         if (static_cast<float>(p.radius) != in.radius) in.radius = 0;
         in.replicas = std::max(in.replicas, std::uint32_t{p.replica} + 1);
-    }
+    };
+    for (const Particle& p : all) include(p, 1);
+    // The expected particles have the weight of those that are there, whatever their number, which may depend
+    // on the end of the run.
+    std::size_t samples = 0;
+    for (const Expected& e : expected) samples += e.samples.size();
+    for (const Expected& e : expected)
+        for (const Particle& p : e.samples) include(p, std::max<std::size_t>(1, all.size() / samples));
     if (in.radius == 0) std::sort(diameters.begin(), diameters.end());
     const double largest = diameters.back();
     // The median and not the largest diameter: with the latter, a single large particle multiplies the number
@@ -168,10 +199,10 @@ bool World::set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const
                std::ceil((options.high.z - options.low.z) / edge));
 }
 
-/// Cell and position within the cell of each particle. Throws ParticleLost if a particle that was inserted
-/// earlier is outside the domain, and io::InvalidInput if a new one is.
-std::vector<World::CellPosition> World::cell_positions(const Domain& in,
-                                                       const std::vector<Particle>& all) const
+/// Cell and position within the cell of each particle. Throws io::InvalidInput if a particle of the list from
+/// number `first_new` on is outside the domain, and ParticleLost if one before it is.
+std::vector<World::CellPosition> World::cell_positions(const Domain& in, const std::vector<Particle>& all,
+                                                       std::size_t first_new) const
 {
     const CellGrid& grid = in.grid;
     std::vector<CellPosition> located(all.size());
@@ -185,7 +216,7 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in,
             if (grid.periodic[c] != 0) {
                 units -= length * std::floor(units / length);
             } else if (!(units >= 0 && units <= length)) {
-                if (k >= inserted_count)
+                if (k >= first_new)
                     refuse(name_of(all[k].id), std::string("is outside the domain along ") + "xyz"[c], r[c]);
                 throw_left(all[k].id);
             }
@@ -208,11 +239,23 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in,
 void World::insert_pending()
 {
     if (!insertion_error.empty()) throw io::InvalidInput(insertion_error);
+    const bool expects = !expected.empty() && !has_domain;
+    if ((expects || !pending.empty()) && laws.empty())
+        refuse("world", "at least one law must be set", "none");
+    if (expects) {
+        std::vector<Particle> all = pending;
+        reserved = pending.size();
+        for (const Expected& e : expected)
+            all.insert(all.end(), e.samples.begin(), e.samples.end()), reserved += e.particles;
+        check_laws(all);
+        if (pending.empty()) domain = domain_of({}), has_domain = true;
+    }
     if (pending.empty()) return;
-    if (laws.empty()) refuse("world", "at least one law must be set", "none");
     if (removes()) remove_outside();
     const std::uint32_t first = next_id;
-    if (inserted_count > 0) {
+    if (!expected.empty() && has_domain && fits(pending)) {
+        append_pending();
+    } else if (inserted_count > 0) {
         insert(particles());
     } else {  // without a copy
         std::vector<Particle> all = std::exchange(pending, {});
@@ -232,15 +275,37 @@ void World::insert_pending()
     }
 }
 
+/// Writes a new particle to place k of the arrays, whose length includes it.
+void World::write_particle(std::uint32_t k, const Particle& particle, const CellPosition& at)
+{
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    const SplitDisplacement<float> split = split_displacement(at.remainder, 0);
+    p.position.data()[k] = {at.position.cell, wrapped_sum(at.position.x, split.x),
+                            wrapped_sum(at.position.y, split.y), wrapped_sum(at.position.z, split.z)};
+    p.velocity.data()[k] = to_float4(particle.v, particle.radius);
+    p.omega.data()[k] = to_float4(particle.omega, particle.fixed ? 0 : 1 / particle.mass);
+    p.species.data()[k] = {.material = static_cast<std::uint16_t>(particle.material),
+                           .replica = particle.replica};
+    Compensation& compensation = p.compensation.data()[k] = {.displacement = split.remainder};
+    store_bfloat16(compensation.v, rounding_error(particle.v), dither_to_nearest);
+    store_bfloat16(compensation.omega, rounding_error(particle.omega), dither_to_nearest);
+    p.id.data()[k] = particle.id;
+    if (options.orientation) {
+        const auto [e0, e1, e2, e3] = unit(particle.e);
+        p.orientation.data()[k] = to_float4({e0, e1, e2}, e3);
+        p.orientation_compensation.data()[k] = {rounding_error(e0), rounding_error(e1), rounding_error(e2),
+                                                rounding_error(e3)};
+    }
+}
+
 /// Writes these particles to the arrays, ordered by id.
 void World::insert(const std::vector<Particle>& all)
 {
     const Domain next = domain_of(all);
-    std::vector<CellPosition> located = cell_positions(next, all);
+    std::vector<CellPosition> located = cell_positions(next, all, inserted_count);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
-    const std::uint32_t first = next_id;
-    domain = next;
+    domain = next, has_domain = true;
 
     // contacts and accelerations of the particles that are in the arrays already are preserved
     Particles<par::Cpu>& p = a.particle;
@@ -256,54 +321,78 @@ void World::insert(const std::vector<Particle>& all)
     for (std::uint32_t k = 0; k < p.acc.size(); ++k)
         acc_of[index(k)] = p.acc.data()[k], alpha_of[index(k)] = p.alpha.data()[k];
 
+    p.resize(static_cast<std::uint32_t>(std::max(reserved, all.size())));
     p.resize(static_cast<std::uint32_t>(all.size()));
-    for (std::uint32_t k = 0; k < p.count; ++k) {
-        const Particle& particle = all[k];
-        const SplitDisplacement<float> split = split_displacement(located[k].remainder, 0);
-        const Position at = located[k].position;
-        p.position.data()[k] = {at.cell, wrapped_sum(at.x, split.x), wrapped_sum(at.y, split.y),
-                                wrapped_sum(at.z, split.z)};
-        p.velocity.data()[k] = to_float4(particle.v, particle.radius);
-        p.omega.data()[k] = to_float4(particle.omega, particle.fixed ? 0 : 1 / particle.mass);
-        p.species.data()[k] = {.material = static_cast<std::uint16_t>(particle.material),
-                               .replica = particle.replica};
-        Compensation& compensation = p.compensation.data()[k] = {.displacement = split.remainder};
-        store_bfloat16(compensation.v, rounding_error(particle.v), dither_to_nearest);
-        store_bfloat16(compensation.omega, rounding_error(particle.omega), dither_to_nearest);
-        p.id.data()[k] = particle.id;
-    }
+    if (options.orientation) p.orientation.resize(p.count), p.orientation_compensation.resize(p.count);
+    for (std::uint32_t k = 0; k < p.count; ++k) write_particle(k, all[k], located[k]);
     if (uses_previous_acceleration(options.scheme)) {
         p.acc.resize(p.count), p.alpha.resize(p.count);
         std::copy(acc_of.begin(), acc_of.end(), p.acc.data());
         std::copy(alpha_of.begin(), alpha_of.end(), p.alpha.data());
     }
-    if (options.orientation) {
-        p.orientation.resize(p.count), p.orientation_compensation.resize(p.count);
-        for (std::uint32_t k = 0; k < p.count; ++k) {
-            const auto [e0, e1, e2, e3] = unit(all[k].e);
-            p.orientation.data()[k] = to_float4({e0, e1, e2}, e3);
-            p.orientation_compensation.data()[k] = {rounding_error(e0), rounding_error(e1),
-                                                    rounding_error(e2), rounding_error(e3)};
-        }
-    }
+    end_insertion(all);
+}
+
+namespace {
+
+/// Changes the length of an array and keeps its content; the new elements have the given value.
+template <class T>
+void lengthen(par::Array<par::Cpu, T>& array, std::size_t n, const T& value = {})
+{
+    const std::vector<T> before(array.data(), array.data() + array.size());
+    array.resize(n);
+    std::copy(before.begin(), before.end(), array.data());
+    std::fill(array.data() + before.size(), array.data() + n, value);
+}
+
+}  // namespace
+
+/// Writes the pending particles behind those in the arrays, whose bytes and contacts do not change.
+void World::append_pending()
+{
+    const std::vector<CellPosition> located = cell_positions(domain, pending, 0);
+    check_laws(pending);
+    Particles<par::Cpu>& p = engine->arrays().particle;
+    const std::uint32_t before = p.count;
+    const auto n = static_cast<std::uint32_t>(before + pending.size());
+    lengthen(p.position, n), lengthen(p.velocity, n), lengthen(p.omega, n), lengthen(p.compensation, n);
+    lengthen(p.species, n), lengthen(p.id, n);
+    if (uses_previous_acceleration(options.scheme))
+        lengthen(p.acc, n, to_float4(options.gravity, 0)), lengthen(p.alpha, n);
+    if (options.orientation) lengthen(p.orientation, n), lengthen(p.orientation_compensation, n);
+    p.count = n;
+    for (std::uint32_t k = 0; k < pending.size(); ++k) write_particle(before + k, pending[k], located[k]);
+    end_insertion(std::exchange(pending, {}));
+}
+
+/// What follows when these particles, the new ones at the end, have been written to the arrays
+void World::end_insertion(const std::vector<Particle>& all)
+{
+    const std::uint32_t first = next_id;
     for (const Particle& particle : all)
         if (particle.id >= first && particle.attached_to >= 0) attach(particle);
     std::vector<Particle>().swap(pending);
     start_balance();
-    inserted_count = all.size();
+    inserted_count = engine->arrays().particle.count;
     next_id = all.back().id + 1;
     if (!forces.empty()) forces.resize(next_id), forces_changed = true;
     engine->arrays_modified();
 }
 
-/// Checks that each pair of materials that can be in contact has a law. Throws io::InvalidInput.
-void World::check_laws(const std::vector<Particle>& particles) const
+/// Checks that each pair of materials that can be in contact has a law, with these particles and those in the
+/// arrays. Throws io::InvalidInput.
+void World::check_laws(const std::vector<Particle>& added) const
 {
     const std::size_t n = materials.size();
     std::vector<char> of_particles(n, 0), all(n, 0);
     std::uint16_t replica = 0;
-    for (const Particle& p : particles)
-        of_particles[static_cast<std::size_t>(p.material)] = 1, replica = std::max(replica, p.replica);
+    const auto include = [&](int material, std::uint16_t of) {
+        of_particles[static_cast<std::size_t>(material)] = 1, replica = std::max(replica, of);
+    };
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        include(p.species.data()[k].material, p.species.data()[k].replica);
+    for (const Particle& one : added) include(one.material, one.replica);
     all = of_particles;
     for (const Boundary& b : boundaries) {
         all[static_cast<std::size_t>(b.material)] = 1;

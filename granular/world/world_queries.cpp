@@ -99,7 +99,12 @@ World::StepLimits World::step_limits(double least_speed) const
 {
     StepLimits limits;
     double speed = least_speed;
-    each_particle([&](const Particle& p) { speed = std::max(speed, p.v.norm()); });
+    const auto each = [&](const auto& f) {
+        each_particle(f);
+        for (const Expected& e : expected)
+            for (const Particle& p : e.samples) f(p);
+    };
+    each([&](const Particle& p) { speed = std::max(speed, p.v.norm()); });
     const auto add_collision = [&](double mass, double R) {
         double& shortest = limits.collision;
         const auto add = [&](const auto& l) {
@@ -117,7 +122,7 @@ World::StepLimits World::step_limits(double least_speed) const
         };
         for (const PairLaw& law : laws) law.normal.visit(add);
     };
-    each_particle([&](const Particle& p) {
+    each([&](const Particle& p) {
         const Material& m = materials[static_cast<std::size_t>(p.material)];
         const double G = m.E / (2 * (1 + m.nu));
         if (p.fixed) return;

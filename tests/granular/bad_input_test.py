@@ -71,11 +71,14 @@ CASE = {
     "fill": [dict(FILL, type="lattice", low=[0, 0, 0.2], high=[0.3, 0.3, 0.5], least_radius=0.04, spacing=1.1,
                   jitter=0.5, count=5, seed=2, v=[0, 0, 0], random_v=0.1),
              dict(FILL, type="hcp", low=[-0.5, -0.5, 0.2], high=[-0.2, -0.2, 0.5]),
-             dict(FILL, type="poisson", low=[-0.5, 0.1, 0.2], high=[-0.2, 0.4, 0.5])]}
+             dict(FILL, type="poisson", low=[-0.5, 0.1, 0.2], high=[-0.2, 0.4, 0.5])],
+    "insert": [{"rate": 2e5, "count": 5, "from": 0, "to": 1, "interval": 1e-5, "radius": 0.03, "least_radius": 0.02, "material": "b",
+                "v": [0, 0, 0], "random_v": 0.1, "tries": 1000, "seed": 2,
+                "region": {"type": "box", "low": [0.2, -0.3, 0.5], "high": [0.4, 0, 0.7]}}]}
 
 # Keys whose numbers must be positive in single precision
 POSITIVE = {"step", "end", "interval", "frame_interval", "skin", "density", "E", "k_n", "k_t", "k_1", "k_2", "alpha", "A",
-            "radius", "mass", "least_radius", "spacing"}
+            "radius", "mass", "least_radius", "spacing", "rate"}
 OUTPUT = ("--contacts", "--replica-rows", "--quiet", "--threads", "1", "--output", "out")
 
 
@@ -389,7 +392,7 @@ def checkpoints(checks):
             ends[ended.returncode] += 1
             if ended.returncode == 5:
                 message = rf"out/checkpoint\.end: {damaged}( at byte \d+)?: [^\n]*"
-                length = r"out/run\.csv: is shorter than the checkpoint states: \d+ bytes, not \d+"
+                length = r"out/\w+\.csv: is shorter than the checkpoint states: \d+ bytes, not \d+"
                 expect(re.fullmatch(rf"hilda: error: ({message}|{length})\n", ended.stderr), what)
                 expect("got" in ended.stderr or "not finite" in ended.stderr or "bytes, not" in ended.stderr, what)
                 checks.refusals["a crafted checkpoint"] += 1

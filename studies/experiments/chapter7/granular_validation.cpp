@@ -140,6 +140,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
+        {"granular-hopper", {"motion.csv"}},
         {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
         {"granular-stacking", {"friction.csv"}},

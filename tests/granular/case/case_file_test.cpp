@@ -571,7 +571,8 @@ TEST_CASE("particles of a fill do not overlap and are within its box", "[granula
     granular::FillSpec f;
     f.type = io::Registry<granular::FillType>::find(type);
     f.low = {0, 0, 0}, f.high = {0.02, 0.02, 0.02};
-    f.radius = f.least_radius = 1e-3, f.spacing = 2e-3 * (type == "hcp" ? 1 : 1.05), f.jitter = 1;
+    f.radius = 1e-3, f.sizes = granular::Sizes(1e-3), f.spacing = 2e-3 * (type == "hcp" ? 1 : 1.05),
+    f.jitter = 1;
     const auto all = granular::fill(f);
     for (std::size_t i = 0; i < all.size(); ++i) {
         for (const double c : {all[i].r.x, all[i].r.y, all[i].r.z}) REQUIRE((c >= 1e-3 && c <= 0.019));

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/insertion/insertion.hpp"
+
+#include "granular/insertion/obstacles.hpp"
+#include "io/archive.hpp"
+#include "io/message.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::granular {
+
+namespace {
+
+/// Mass of a sphere as the world stores it: its inverse in single precision [kg]
+double stored_mass(double radius, double density)
+{
+    const double mass = 4. / 3 * M_PI * radius * radius * radius * density;
+    return 1 / static_cast<double>(static_cast<float>(1 / mass));
+}
+
+}  // namespace
+
+double InsertionSpec::due(double t) const
+{
+    const double time = std::min(t, to) - from;
+    if (!(time >= 0)) return 0;
+    if (mass_rate > 0) return mass_rate * time;
+    // a number that is whole up to rounding errors is whole
+    return rate > 0 ? std::floor(rate * time * (1 + 1e-12) + 1e-9) : static_cast<double>(count);
+}
+
+double InsertionSpec::largest_count(double t) const
+{
+    const double mean_mass = 4. / 3 * M_PI * density * sizes.mean_cube();
+    const double number = mass_rate > 0 ? 1.05 * due(t) / mean_mass + 100 : due(t);
+    return std::min(number, static_cast<double>(count));
+}
+
+Particle InsertionSpec::particle(double radius) const
+{
+    Particle p;
+    p.radius = radius, p.material = material, p.replica = replica, p.v = v;
+    return p;
+}
+
+std::vector<Particle> InsertionSpec::samples() const
+{
+    constexpr int number = 64;
+    std::vector<Particle> all = {particle(sizes.least())};
+    for (int k = 0; k < number; ++k) all.push_back(particle(sizes.quantile((k + 0.5) / number)));
+    all.push_back(particle(sizes.largest()));
+    return all;
+}
+
+Insertion::Insertion(const InsertionSpec& of) : spec(of) { state.random = spec.seed; }
+
+bool Insertion::is_due(const State& now, double t) const
+{
+    if (now.count >= spec.count) return false;
+    if (spec.mass_rate == 0) return static_cast<double>(now.count) < spec.due(t);
+    // the inserted mass is the closest one to that which is due
+    return now.mass + stored_mass(now.radius, spec.density) / 2 <= spec.due(t);
+}
+
+void Insertion::throw_blocked(const State& now, double t) const
+{
+    throw InsertionBlocked(io::formatted(
+        "insertion '%s': no place for a particle of radius %.9g m in its region, a %s, in %lld tries from t "
+        "= %.9g s to "
+        "t = %.9g s; it has inserted %lld particles",
+        spec.name.c_str(), now.radius, spec.region.description().c_str(), static_cast<long long>(now.tries),
+        now.blocked_since, t, static_cast<long long>(now.count)));
+}
+
+void Insertion::before_step(World& world)
+{
+    const long steps = world.steps() - spec.first_step;
+    if (steps < 0 || steps % spec.interval != 0) return;
+    const double t = world.t();
+    State now = state;
+    Random random(now.random);
+    const auto draw = [&] {
+        if (now.radius == 0) now.radius = spec.sizes.draw(random);
+    };
+    draw();
+    std::vector<Particle> placed;
+    if (is_due(now, t)) {
+        const double R = spec.sizes.largest();
+        const auto [low, high] = spec.region.bounds(R);
+        Obstacles obstacles(world, low, high, R, spec.replica);
+        for (bool has_place = true; has_place && is_due(now, t); draw()) {
+            Particle p = spec.particle(now.radius);
+            has_place = false;
+            for (long k = 0; k < InsertionSpec::tries_at_once && !has_place; ++k) {
+                p.r = spec.region.centre(p.radius, random);
+                has_place = !obstacles.touches(p.r, p.radius);
+                if (!has_place && now.tries++ == 0) now.blocked_since = t;
+            }
+            if (!has_place) {
+                if (!spec.postpones || now.tries >= spec.most_tries) throw_blocked(now, t);
+                break;
+            }
+            p.v += spec.random_v * random.direction();
+            obstacles.add(p.r, p.radius);
+            placed.push_back(p);
+            now.mass += stored_mass(p.radius, spec.density);
+            ++now.count, now.radius = 0, now.tries = 0;
+        }
+    }
+    now.random = random.state;
+    for (const Particle& p : placed) world.add(p);
+    state = now;
+}
+
+void Insertion::transfer(io::Archive& a)
+{
+    a.value(state);
+    a.check(state.count >= 0 && state.count <= spec.count && std::isfinite(state.mass) && state.mass >= 0 &&
+                state.tries >= 0 && std::isfinite(state.blocked_since) &&
+                (state.radius == 0 ||
+                 (state.radius >= spec.sizes.least() && state.radius <= spec.sizes.largest())),
+            io::formatted(
+                "invalid state of the insertion '%s', got %lld particles of %g kg, the next radius %g m, "
+                "%lld tries since %g s",
+                spec.name.c_str(), static_cast<long long>(state.count), state.mass, state.radius,
+                static_cast<long long>(state.tries), state.blocked_since));
+}
+
+std::int64_t Insertions::count() const
+{
+    std::int64_t sum = 0;
+    for (const Insertion& i : all) sum += i.count();
+    return sum;
+}
+
+double Insertions::mass() const
+{
+    double sum = 0;
+    for (const Insertion& i : all) sum += i.mass();
+    return sum;
+}
+
+void Insertions::start(World& world, double t)
+{
+    for (const Insertion& i : all)
+        world.expect(i.what().samples(), static_cast<std::size_t>(std::min(i.what().largest_count(t), 4e9)));
+    world.before_each_step([this](World& w) {
+        for (Insertion& i : all) i.before_step(w);
+    });
+}
+
+void Insertions::transfer(io::Archive& a)
+{
+    for (Insertion& i : all) i.transfer(a);
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Insertion of particles during a run.
+
+#pragma once
+
+#include "granular/insertion/region.hpp"
+#include "granular/insertion/sizes.hpp"
+#include "granular/world/world.hpp"
+
+#include <cstdint>
+#include <limits>
+
+namespace hilda::granular {
+
+/// No place was found for a particle. what() has the name of the insertion, its region and the number of
+/// tries.
+class InsertionBlocked : public io::NumericalFailure {
+public:
+    explicit InsertionBlocked(const std::string& what) : NumericalFailure("insertion_blocked", what) {}
+};
+
+/// An entry of `insert`
+struct InsertionSpec {
+    static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
+
+    std::string name;
+    InsertionRegion region;
+    Sizes sizes;
+    double rate = 0, mass_rate = 0;  ///< one of the two is positive, or none [1/s, kg/s]
+    std::int64_t count = no_limit;   ///< largest number of particles; without a rate all are due at `from`
+    double from = 0, to = std::numeric_limits<double>::infinity();  ///< [s]
+    long first_step = 0, interval = 1;                              ///< of the insertions [steps]
+    Vec3 v = {0, 0, 0};                                             ///< [m/s]
+    double random_v = 0;  ///< magnitude of an added velocity of random direction [m/s]
+    int material = 0;
+    double density = 0;  ///< [kg/m³]
+    std::uint16_t replica = 0;
+    bool postpones = true;     ///< a particle that finds no place waits for the next insertion
+    long most_tries = 100000;  ///< positions in turn without place, after which the run ends
+    std::uint64_t seed = 1;
+
+    static constexpr long tries_at_once = 200;  ///< positions that are tried for a particle in one insertion
+
+    /// Number of particles that are due until t, or their mass [kg] with a mass_rate
+    double due(double t) const;
+    /// Largest number of particles until t; with a mass rate an estimate from above
+    double largest_count(double t) const;
+    /// A particle with a radius, without a place
+    Particle particle(double radius) const;
+    /// Particles that represent the distribution of the sizes
+    std::vector<Particle> samples() const;
+};
+
+/// An insertion and its state.
+///
+/// Particles are inserted before the steps first_step, first_step + interval, ...: those that are due at this
+/// time and were not inserted yet. The centres are random places in the region where the particle touches
+/// nothing. The random numbers depend on the seed and the earlier insertions only.
+class Insertion {
+public:
+    explicit Insertion(const InsertionSpec& spec);
+
+    /// Inserts the particles that are due; called before each step. Throws InsertionBlocked, and then the
+    /// state and the world are as before.
+    void before_step(World& world);
+
+    const InsertionSpec& what() const { return spec; }
+    std::int64_t count() const { return state.count; }  ///< of all inserted particles
+    double mass() const { return state.mass; }          ///< of all inserted particles [kg]
+    void transfer(io::Archive& a);
+
+private:
+    /// Written to checkpoints as bytes, without padding
+    struct State {
+        std::uint64_t random = 0;  ///< state of the random numbers
+        std::int64_t count = 0;    ///< of inserted particles
+        double mass = 0;           ///< of inserted particles [kg]
+        double radius = 0;         ///< of the next particle [m]; 0: not drawn yet
+        std::int64_t tries = 0;    ///< positions without place since the last particle
+        double blocked_since = 0;  ///< time of the first of them [s]
+    };
+
+    bool is_due(const State& now, double t) const;
+    [[noreturn]] void throw_blocked(const State& now, double t) const;
+
+    InsertionSpec spec;
+    State state;
+};
+
+/// All insertions of a case
+struct Insertions {
+    std::vector<Insertion> all;
+
+    std::int64_t count() const;
+    double mass() const;
+    /// Tells the world which particles will come until t, and inserts them before its steps. The list
+    /// outlives the world.
+    void start(World& world, double t);
+    void transfer(io::Archive& a);
+};
+
+/// Reads an entry of `insert`, without material and replica, of a case with a step h and gravity [s, m/s²].
+/// Throws io::InvalidInput.
+InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h, const Vec3& gravity);
+
+}  // namespace hilda::granular

@@ -142,6 +142,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-cratering", {"motion.csv"}},
         {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
+        {"granular-shear", {"motion.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}}};
     const auto found = tables.find(study);

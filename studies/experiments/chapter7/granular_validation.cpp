@@ -140,6 +140,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
+        {"granular-drum", {"surface.csv", "grains.csv"}},
         {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
         {"granular-shear", {"motion.csv"}},

@@ -49,7 +49,7 @@ Matrix free_inertia(const Boundary& b)
 /// ω with L along the free axes and the prescribed components along the others
 Vec3 omega_of(const Boundary& b, const Vec3& L, const Vec3& prescribed)
 {
-    return free_inertia(b).solve(free_part(b, L) + prescribed - free_part(b, prescribed));
+    return free_inertia(b).solve(free_part(b, L) + (prescribed - free_part(b, prescribed)));
 }
 
 /// J_r(θ)⁻¹ a = a + 1/2 θ × a + c θ × (θ × a),  c = (1 - θ/2 cot(θ/2))/θ²

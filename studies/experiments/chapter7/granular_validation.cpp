@@ -141,8 +141,10 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-brick", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
         {"granular-hopper", {"motion.csv"}},
+        {"granular-drum", {"surface.csv", "grains.csv"}},
         {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
+        {"granular-shear", {"motion.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}}};
     const auto found = tables.find(study);

@@ -242,10 +242,18 @@ void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBo
         b.mass = solid->mass, b.inertia = solid->inertia;
     else if (o.has("mass"))
         b.mass = o.positive("mass");
-    else
+    else {
+        for (const char* key : {"inertia", "free", "F", "T"})
+            if (o.has(key)) o.fail(key, std::string(key) + " is only for a boundary with a mass, got none");
         return;
+    }
     if (o.has("inertia")) b.inertia = read_inertia(o);
     b.free = o.six_flags("free", true);
+    if (b.inertia.is_zero()) {
+        if (o.has("free") && o.find("free")->size() == 6 && (b.free[3] || b.free[4] || b.free[5]))
+            o.fail("free", "free rotations need inertia, got none or 0");
+        if (o.has("T")) o.fail("T", "T needs inertia, got none or 0");
+    }
     const bool turns = b.free[3] && b.free[4] && b.free[5] && !b.inertia.is_zero();
     if (turns && body.motion.omega)
         o.fail("omega", "omega must be three numbers if the boundary rotates freely about all axes");

@@ -10,8 +10,9 @@
 ///     sinkage = z_init(x) - (z - radius)                                            Fang (2022), Eq. 7.7
 ///
 /// with the axis of the wheel at (x, z) and z_init(x) the highest point of the settled bed within 2R of x.
-/// The text has a bed with a packing fraction of 0.544. Here the bed settles with a friction of 0.1, so that it
-/// is about as dense as that of Johnson et al. (2015, J. Terramech. 62, 31), 0.62, who simulate the same rig.
+/// The text has a bed with a packing fraction of 0.544. Here the bed settles with a friction of 0.1, so that
+/// it is about as dense as that of Johnson et al. (2015, J. Terramech. 62, 31), 0.62, who simulate the same
+/// rig.
 ///
 /// The power torque ω - pull v is dissipated in the bed, but for its change of energy.
 

@@ -31,7 +31,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 
 namespace hilda::granular {

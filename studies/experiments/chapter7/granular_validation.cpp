@@ -146,7 +146,8 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
         {"granular-shear", {"motion.csv"}},
         {"granular-stacking", {"friction.csv"}},
-        {"granular-waves", {"profiles.csv"}}};
+        {"granular-waves", {"profiles.csv"}},
+        {"granular-wheel", {"motion.csv", "grains.csv"}}};
     const auto found = tables.find(study);
     std::vector<std::string> files = found == tables.end() ? std::vector<std::string>{} : found->second;
     files.push_back(study + ".png");

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Single wheel with prescribed slip on a bed of grains (Fang 2022, Sec. 7.2.6), in plane strain.
+///
+/// The wheel is a cylinder, free in the vertical direction under its load. Its horizontal velocity v and its
+/// angular velocity ω are prescribed, with the slip s = 1 - v/(ω radius). The bed is periodic along the axis.
+/// All loads are those of the width of 16 cm.
+///
+///     pull   = horizontal load of the grains on the wheel, positive in the direction of travel (DBP)
+///     torque = driving torque of the axle
+///     sinkage = z_init(x) - (z - radius)                                            Fang (2022), Eq. 7.7
+///
+/// with the axis of the wheel at (x, z) and z_init(x) the highest point of the settled bed within 2R of x.
+/// The text has a bed with a packing fraction of 0.544. Here the bed settles with a friction of 0.1, so that
+/// it is about as dense as that of Johnson et al. (2015, J. Terramech. 62, 31), 0.62, who simulate the same
+/// rig.
+///
+/// The power torque ω - pull v is dissipated in the bed, but for its change of energy.
+
+#include "granular/validations/wheel.hpp"
+
+#include "granular/case/split_mix.hpp"
+#include "granular/mesh/mesh_shapes.hpp"
+#include "io/error.hpp"
+#include "io/message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hilda::granular {
+
+namespace {
+
+constexpr double g = 9.81, mu = 0.9, settling_mu_r = 0.2, gamma = 1e3;
+constexpr double radius = 0.13, omega = 17 * std::numbers::pi / 180, wheel_width = 0.16, wheel_load = 80;
+constexpr double start_x = 0.18, resting = 0.3;  // [m, s]
+constexpr double settled_energy = 1e-3;          ///< largest kinetic energy per grain [m g R]
+constexpr double longest_settling = 3;           // [s]
+
+Material rock() { return {"rock", 2500, 1e7, 0.3}; }
+
+PairLaw law(const WheelBed& bed, double friction, double mu_r)
+{
+    const auto k = static_cast<float>(bed.k);
+    const auto bound = static_cast<float>(friction);
+    PairLaw l;
+    l.normal = ScaledHooke{.k_n = k, .gamma_n = gamma};
+    l.tangential = Mindlin{.spring = {.k_t = k, .c = 0, .gamma_t = gamma}, .cap = {bound, bound}};
+    // The lever arm R/2 is that of the author's results of Sec. 7.1.4.
+    if (mu_r > 0)
+        l.rolling = ConstantTorque{.mu_r = static_cast<float>(mu_r), .slow = 1e-4f, .half_radius = 1};
+    return l;
+}
+
+/// The world of a bed and of its wheel, at rest above it
+struct Soil {
+    World world;
+    WheelBed bed;
+    int wheel = 0;
+
+    Soil(const WheelBed& bed, double friction, double mu_r, Device device)
+        : world(options(bed, device), {rock()}), bed(bed)
+    {
+        world.set_law(0, 0, law(bed, friction, mu_r));
+        Boundary b;
+        world.add(b);  // floor
+        b.axis = {1, 0, 0}, world.add(b);
+        b.axis = {-1, 0, 0}, b.r = {bed.length, 0, 0}, world.add(b);
+        b.r = {start_x, bed.width / 2, 3 * bed.depth + radius};
+        if (bed.wheel > 0) {
+            // The axis of a lathe is z. It is turned to y by -90 degrees about x.
+            const double half = bed.wheel / 2, s = std::sqrt(0.5);
+            b.shape = Boundary::Shape::mesh, b.axis = {0, 0, 1}, b.p = {s, {-s, 0, 0}};
+            wheel = world.add(b, lathe_mesh({{0, half}, {radius, half}, {radius, -half}, {0, -half}}, 96));
+        } else {
+            b.shape = Boundary::Shape::cylinder, b.axis = {0, 1, 0}, b.radius = radius;
+            wheel = world.add(b);
+        }
+    }
+
+    static WorldOptions options(const WheelBed& bed, Device device)
+    {
+        WorldOptions o;
+        o.low = {-bed.R, 0, -bed.R}, o.high = {bed.length + bed.R, bed.width, 3 * bed.depth};
+        o.periodic = {false, true, false};
+        o.gravity = {0, 0, -g}, o.h = bed.h, o.device = device;
+        return o;
+    }
+
+    double of_grain() const { return rock().density * 4 * std::numbers::pi / 3 * std::pow(bed.R, 3); }
+
+    /// A loose lattice with random displacements
+    void fill()
+    {
+        constexpr double packing = 0.56;
+        const double R = bed.R, across = bed.length - 2 * R;
+        const int columns = static_cast<int>(across / (2.1 * R)) + 1,
+                  rows = std::max(1, static_cast<int>(bed.width / (2.1 * R)));
+        const auto count = static_cast<int>(
+            std::lround(packing * bed.length * bed.width * bed.depth * rock().density / of_grain()));
+        Random random(1);
+        const auto in = [&](double most) { return random.number(-most, most); };
+        for (int k = 0; k < count; ++k) {
+            const int i = k % columns, j = k / columns % rows, layer = k / (columns * rows);
+            Particle p;
+            p.radius = R;
+            p.r.x = std::clamp(R + i * across / (columns - 1) + in(0.03 * R), R, bed.length - R);
+            p.r.y = (j + 0.5) * bed.width / rows + in(0.03 * R);
+            p.r.z = 1.05 * R + layer * 2.15 * R + in(0.03 * R);
+            p.v = {in(0.3), in(0.3), in(0.3)};
+            world.add(p);
+        }
+    }
+
+    void settle(const std::function<void(double)>& progress)
+    {
+        while (true) {
+            world.step(std::lround(0.02 / bed.h));
+            progress(world.t() / longest_settling);
+            const double energy =
+                world.kinetic_energy() / (static_cast<double>(world.count()) * of_grain() * g * bed.R);
+            if (world.t() > 0.1 && energy < settled_energy) return;
+            if (world.t() > longest_settling)
+                throw io::NumericalFailure(
+                    "not_settled", io::formatted("the bed has not settled after %g s: %.3g m g R per grain, "
+                                                 "and %g is allowed",
+                                                 longest_settling, energy, settled_energy));
+        }
+    }
+};
+
+/// Highest point of the bed within 2R of x
+double surface(const std::vector<Particle>& grains, double x, double R)
+{
+    double highest = 0;
+    for (const Particle& p : grains)
+        if (std::abs(p.r.x - x) < 2 * R) highest = std::max(highest, p.r.z + R);
+    return highest;
+}
+
+}  // namespace
+
+BedCase bed_case(const WheelBed& bed)
+{
+    return {"wheel",
+            {{"R", bed.R},
+             {"length", bed.length},
+             {"width", bed.width},
+             {"depth", bed.depth},
+             {"h", bed.h},
+             {"density", rock().density},
+             {"k", bed.k},
+             {"gamma", gamma},
+             {"mu", bed.settling_mu},
+             {"mu_r", settling_mu_r},
+             {"g", g},
+             {"settled energy", settled_energy}}};
+}
+
+std::vector<Vec3> settled_soil(const WheelBed& bed, const ValidationOptions& options,
+                               const std::function<void(double)>& progress)
+{
+    std::vector<Vec3> grains;
+    options.beds.bed(
+        bed_case(bed),
+        [&] {
+            Soil now(bed, bed.settling_mu, settling_mu_r, options.device);
+            now.fill();
+            now.settle(progress);
+            for (const Particle& p : now.world.particles()) grains.push_back(p.r);
+        },
+        [&](io::Archive& a) { a.list(grains); });
+    return grains;
+}
+
+WheelRecord::Mean WheelRecord::mean(const std::vector<double>& column, double from) const
+{
+    double n = 0, sum = 0, squares = 0;
+    for (std::size_t k = 0; k < t.size(); ++k)
+        if (t[k] > from) n += 1, sum += column[k], squares += column[k] * column[k];
+    const double value = sum / n;
+    return {value, std::sqrt(std::max(0., squares / n - value * value))};
+}
+
+WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const ValidationOptions& options)
+{
+    const WheelBed& bed = test.bed;
+    Soil now(bed, mu, test.mu_r, options.device);
+    World& world = now.world;
+    for (const Vec3& r : soil) {
+        Particle p;
+        p.radius = bed.R, p.r = r;
+        world.add(p);
+    }
+    const std::vector<Particle> before = world.particles();
+    const double scale = wheel_width / (bed.wheel > 0 ? bed.wheel : bed.width),
+                 v = omega * radius * (1 - test.slip);
+
+    double lowest = 0;  // height of the axis where the wheel touches the first grain
+    for (const Particle& p : before)
+        if (const double dx = std::abs(p.r.x - start_x), reach = radius + bed.R; dx < reach)
+            lowest = std::max(lowest, p.r.z + std::sqrt(reach * reach - dx * dx));
+    Boundary& b = world.boundary(now.wheel);
+    b.r.z = lowest, b.mass = wheel_load / scale / g, b.free = {false, false, true};
+    world.step(std::lround(resting / bed.h));
+    world.boundary(now.wheel).v.x = v, world.boundary(now.wheel).omega = {0, omega, 0};
+
+    WheelRecord out;
+    constexpr long between = 20;  // steps between two evaluations of the loads
+    const auto rows = std::lround(test.duration / test.interval),
+               loads = std::lround(test.interval / bed.h / static_cast<double>(between));
+    const double from = (1 - test.averaged) * test.duration;
+    double dissipated = 0, since = 0;
+    for (long k = 0; k < rows; ++k) {
+        const double t = static_cast<double>(k + 1) * test.interval;
+        if (since == 0 && t > from) dissipated = world.watch().dissipated, since = t - test.interval;
+        double pull = 0, load = 0, torque = 0, sinkage = 0;
+        for (long i = 0; i < loads; ++i) {
+            world.step(between);
+            const Wrench w = world.totals().on_boundary[static_cast<std::size_t>(now.wheel)];
+            const double part = 1 / static_cast<double>(loads);
+            pull += part * scale * w.F.x, load += part * scale * w.F.z, torque -= part * scale * w.T.y;
+            const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(now.wheel)];
+            if (i % 10 == 0)
+                sinkage += (surface(before, wheel.r.x, bed.R) - (wheel.r.z - radius)) /
+                           std::ceil(static_cast<double>(loads) / 10);
+        }
+        out.t.push_back(t), out.pull.push_back(pull), out.load.push_back(load);
+        out.torque.push_back(torque), out.sinkage.push_back(sinkage);
+    }
+    out.power = out.mean(out.torque, from).value * omega - out.mean(out.pull, from).value * v;
+    out.dissipated = scale * (world.watch().dissipated - dissipated) / (test.duration - since);
+    const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(now.wheel)];
+    out.wheel_x = wheel.r.x, out.wheel_z = wheel.r.z;
+    for (const Particle& p : world.particles()) out.grain.insert(out.grain.end(), {p.r.x, p.r.z, p.v.norm()});
+    options.include(io::formatted("slip %g, mu_r = %g", test.slip, test.mu_r), world);
+    return out;
+}
+
+namespace {
+
+/// By slip; then some without rolling friction
+std::vector<WheelTest> tests(bool full)
+{
+    WheelTest test;
+    if (full) test.bed.width = 0.12;
+    std::vector<WheelTest> all;
+    const auto add = [&](double mu_r, const std::vector<double>& slips) {
+        for (const double slip : slips) all.push_back(test), all.back().slip = slip, all.back().mu_r = mu_r;
+    };
+    if (full) {
+        add(0.2, {-0.7, -0.5, -0.3, -0.1, 0, 0.1, 0.3, 0.5, 0.7});
+        add(0, {-0.3, 0, 0.3, 0.7});
+    } else {
+        add(0.2, {-0.3, 0, 0.3, 0.7});
+        add(0, {0.3});
+    }
+    return all;
+}
+
+struct Measured {
+    WheelTest test;
+    double pull = 0, load = 0, torque = 0, sinkage = 0, power = 0, dissipated = 0;
+};
+
+std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
+{
+    constexpr double none = 1e3, infinite = 1e300;
+    double pull = infinite, torque = infinite, zero = std::nan(""), power = infinite, dissipated = infinite;
+    double load = 0;
+    Measured least, last;  // of the sinkage; of the slip
+    least.sinkage = infinite;
+    std::vector<ValidationCheck> out;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const Measured& m = all[k];
+        load = max_or_nan(load, std::abs(m.load / wheel_load - 1));
+        power = std::min(power, m.power), dissipated = std::min(dissipated, m.dissipated);
+        if (m.test.mu_r == 0) {
+            for (const Measured& rough : all)
+                if (rough.test.mu_r > 0 && rough.test.slip == m.test.slip && m.test.slip == 0.3) {
+                    out.push_back({"sinkage without rolling friction over that with, slip 0.3",
+                                   m.sinkage / rough.sinkage, 1, none});
+                    out.push_back({"pull without rolling friction minus that with, slip 0.3 [N]",
+                                   m.pull - rough.pull, -none, 0});
+                }
+            continue;
+        }
+        if (m.sinkage < least.sinkage) least = m;
+        if (k > 0) {
+            pull = std::min(pull, m.pull - last.pull), torque = std::min(torque, m.torque - last.torque);
+            if (last.pull < 0 && m.pull >= 0)
+                zero = last.test.slip - last.pull * (m.test.slip - last.test.slip) / (m.pull - last.pull);
+        }
+        last = m;
+    }
+    out.insert(out.begin(), {{"least increase of the pull to the next slip [N]", pull, 0, none},
+                             {"slip at which the pull changes its sign", zero, -0.1, 0.3},
+                             {"least increase of the torque to the next slip [N m]", torque, 0, none},
+                             {"slip of the least sinkage", least.test.slip, -0.3, 0.3},
+                             {"sinkage at slip 0.7 over the least", last.sinkage / least.sinkage, 1, none},
+                             {"vertical load over the weight of the wheel - 1, largest", load, 0, 0.02},
+                             {"least torque omega - pull v [W]", power, 0, none},
+                             {"least dissipation of the contacts [W]", dissipated, 0, none}});
+    return out;
+}
+
+ValidationResult run(const ValidationOptions& options)
+{
+    const std::vector<WheelTest> all = tests(options.full);
+    if (options.full) options.announce("13 wheel tests, about 5 minutes of CPU time in the preset native");
+    const double parts = static_cast<double>(all.size()) + 1;
+    double done = 0;
+    std::vector<Vec3> soil;
+    options.kept.part(
+        [&] {
+            soil = settled_soil(all.front().bed, options,
+                                [&](double share) { options.progress(share / parts); });
+        },
+        [&](io::Archive& a) { a.list(soil); });
+    options.progress((done = 1) / parts);
+
+    ValidationTable table{"study",
+                          {"slip", "mu_r", "pull", "pull_deviation", "torque", "torque_deviation", "sinkage",
+                           "sinkage_deviation", "load", "power", "dissipated"},
+                          {}},
+        motion{"motion", {"slip", "mu_r", "t", "pull", "load", "torque", "sinkage"}, {}},
+        grains{"grains", {"slip", "mu_r", "x", "z", "speed", "wheel_x", "wheel_z"}, {}};
+    std::vector<Measured> measured;
+    for (const WheelTest& test : all) {
+        WheelRecord r;
+        options.kept.part([&] { r = drive(test, soil, options); },
+                          [&](io::Archive& a) {
+                              for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage, &r.grain})
+                                  a.list(*column);
+                              a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x), a.value(r.wheel_z);
+                          });
+        options.progress(++done / parts);
+        const double from = (1 - test.averaged) * test.duration;
+        const WheelRecord::Mean pull = r.mean(r.pull, from), torque = r.mean(r.torque, from),
+                                sinkage = r.mean(r.sinkage, from), load = r.mean(r.load, from);
+        table.rows.push_back({test.slip, test.mu_r, pull.value, pull.deviation, torque.value,
+                              torque.deviation, sinkage.value, sinkage.deviation, load.value, r.power,
+                              r.dissipated});
+        for (std::size_t k = 0; k < r.t.size(); ++k)
+            motion.rows.push_back(
+                {test.slip, test.mu_r, r.t[k], r.pull[k], r.load[k], r.torque[k], r.sinkage[k]});
+        for (std::size_t k = 0; k + 2 < r.grain.size(); k += 3)
+            grains.rows.push_back(
+                {test.slip, test.mu_r, r.grain[k], r.grain[k + 1], r.grain[k + 2], r.wheel_x, r.wheel_z});
+        measured.push_back(
+            {test, pull.value, load.value, torque.value, sinkage.value, r.power, r.dissipated});
+    }
+    return {{table, motion, grains}, checks(measured)};
+}
+
+const bool registered = io::Registry<Validation>::add(
+    {.name = "wheel",
+     .description = "pull, torque and sinkage of a wheel on a bed of grains over the slip (Figs. 7.21-7.23)",
+     .run = run});
+
+}  // namespace
+
+}  // namespace hilda::granular

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Wheel with prescribed slip on a bed of grains, in plane strain; see wheel.cpp.
+
+#pragma once
+
+#include "granular/validations/validation.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace hilda::granular {
+
+/// A bed that is periodic along the axis of the wheel, and the width of the wheel
+struct WheelBed {
+    double wheel = 0;          ///< of a wheel with end faces, a mesh [m]; 0: plane strain
+    double length = 0.7;       ///< along x, between end walls [m]
+    double width = 0.06;       ///< period along y [m]
+    double depth = 0.10;       ///< approximate [m]
+    double R = 7.5e-3;         ///< radius of the grains [m]
+    double k = 1e6;            ///< normal and tangential stiffness at an overlap of R [N/m]
+    double settling_mu = 0.1;  ///< coefficient of friction during the settling; it determines the packing
+    double h = 5e-5;           ///< step [s]
+};
+
+/// What determines the settled bed
+BedCase bed_case(const WheelBed& bed);
+
+/// Centres of the settled grains, from ValidationOptions::beds if it is kept there. `progress`
+/// receives values from 0 to 1. Throws io::NumericalFailure if the bed does not settle.
+std::vector<Vec3> settled_soil(
+    const WheelBed& bed, const ValidationOptions& options,
+    const std::function<void(double)>& progress = [](double) {});
+
+struct WheelTest {
+    WheelBed bed = {};
+    double mu_r = 0.2;       ///< coefficient of rolling friction
+    double slip = 0;         ///< 1 - v/(ω radius)
+    double duration = 5;     ///< of the motion [s]
+    double averaged = 0.5;   ///< share of the duration at its end over which means are taken
+    double interval = 0.05;  ///< between rows of the record [s]
+};
+
+/// Loads per width of the wheel of the dissertation, 16 cm
+struct WheelRecord {
+    /// Means over the intervals: end of the interval [s], pull (F_x) and vertical load [N], driving torque
+    /// [N m], sinkage [m]
+    std::vector<double> t, pull, load, torque, sinkage;
+    double power = 0;                 ///< mean of torque ω - pull v [W]
+    double dissipated = 0;            ///< mean dissipation of the contacts of the grains [W]
+    std::vector<double> grain;        ///< x, z, speed of each grain at the end [m, m/s]
+    double wheel_x = 0, wheel_z = 0;  ///< axis of the wheel at the end [m]
+
+    /// Mean and standard deviation of a column over the last intervals
+    struct Mean {
+        double value = 0, deviation = 0;
+    };
+    Mean mean(const std::vector<double>& column, double from) const;
+};
+
+/// The test on a settled bed with the same parameters.
+WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const ValidationOptions& options);
+
+}  // namespace hilda::granular

@@ -97,9 +97,9 @@ bool is_inertia(const Inertia& J)
     return minors(scaled, 0) && minors(second, -1e-9);  // a flat body has second moments of zero
 }
 
-void accelerate(Boundary& b, const Vec3& F, const Vec3& T, double h)
+void accelerate(Boundary& b, const Vec3& F, const Vec3& T, const Vec3& g, double h)
 {
-    const Vec3 a = (1 / b.mass) * F;
+    const Vec3 a = (1 / b.mass) * F + g;
     b.v += h * Vec3{b.free[0] ? a.x : 0, b.free[1] ? a.y : 0, b.free[2] ? a.z : 0};
     if (b.rotates_freely()) b.omega += free_inertia(b).solve(h * free_part(b, T));
 }

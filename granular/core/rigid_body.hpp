@@ -30,9 +30,9 @@ double kinetic_energy(const Boundary& b);
 /// of the other two.
 bool is_inertia(const Inertia& J);
 
-/// Adds the impulses h F and h T to the momenta of the free directions and updates v and ω. v += h/m F has no
-/// part along the axes that are not free.
-void accelerate(Boundary& b, const Vec3& F, const Vec3& T, double h);
+/// Adds the impulses h (F + m g) and h T to the momenta of the free directions and updates v and ω.
+/// v += h (F/m + g) has no part along the axes that are not free.
+void accelerate(Boundary& b, const Vec3& F, const Vec3& T, const Vec3& g, double h);
 
 /// Sets the angular velocity about the axes that are not free. The angular momenta about the other axes stay
 /// the same.

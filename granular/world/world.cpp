@@ -318,7 +318,6 @@ void World::one_step()
     }
     if (verlet) {
         accelerate_tools(0.5);
-        send_boundaries();
         particle_displacement += advance(Part::before_loads);
         boundary_displacement += move_boundaries();
         if (!is_posed()) move_attached();

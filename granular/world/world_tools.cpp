@@ -10,12 +10,19 @@ namespace hilda::granular {
 
 using namespace detail;
 
+namespace {
+
+bool is_tool(const Boundary& b) { return b.mass > 0; }
+
+}  // namespace
+
 /// Computes the contact loads on the tools.
 void World::find_tool_loads()
 {
-    if (std::none_of(boundaries.begin(), boundaries.end(), [](const Boundary& b) { return b.mass > 0; }))
-        return;
-    tool_loads = engine->free_boundary_wrenches(domain);
+    if (std::any_of(boundaries.begin(), boundaries.end(), is_tool))
+        tool_loads = engine->free_boundary_wrenches(domain);
+    else
+        tool_loads.clear();
 }
 
 /// Adds the impulses of the loads on the tools over `part` of a step to their momenta.
@@ -24,12 +31,12 @@ void World::find_tool_loads()
 /// (symplectic Euler).
 void World::accelerate_tools(double part)
 {
-    tool_loads.resize(boundaries.size());
+    if (tool_loads.empty()) return;
+    tool_loads.resize(boundaries.size());  // a boundary may have been added since then
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
-        if (!(b.mass > 0)) continue;
-        accelerate(b, tool_loads[k].F + b.F + b.mass * options.gravity, tool_loads[k].T + b.T,
-                   part * options.h);
+        if (!is_tool(b)) continue;
+        accelerate(b, tool_loads[k].F + b.F, tool_loads[k].T + b.T, options.gravity, part * options.h);
     }
 }
 

@@ -10,6 +10,8 @@
 #include "granular/validations/cratering.hpp"
 
 #include "granular/case/split_mix.hpp"
+#include "granular/validations/settling.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 
@@ -87,18 +89,13 @@ struct Bed {
     void settle(double R, const std::function<void(double)>& progress)
     {
         const double weight = glass().density * 4 * std::numbers::pi / 3 * R * R * R * g;
-        const long interval = std::lround(0.01 / step_of(R));
-        while (true) {
-            world.step(interval);
-            progress(world.t() / longest_settling);
-            const double energy = world.kinetic_energy() / (static_cast<double>(world.count()) * weight * R);
-            if (world.t() > 0.1 && energy < settled_energy) return;
-            if (world.t() > longest_settling)
-                throw io::NumericalFailure(
-                    "not_settled", io::formatted("the bed of grains of R = %g m has not settled after %g s: "
-                                                 "%.3g m g R per grain, and %g is allowed",
-                                                 R, longest_settling, energy, settled_energy));
-        }
+        granular::settle(world,
+                         {.what = io::formatted("the bed of grains of R = %g m", R),
+                          .unit = static_cast<double>(world.count()) * weight * R,
+                          .interval = std::lround(0.01 / step_of(R)),
+                          .longest = longest_settling,
+                          .energy = settled_energy},
+                         progress);
     }
 
     /// Mean height of the surface: of the highest point in each square of edge 4 R, without those at the
@@ -216,19 +213,6 @@ Crater impact(const Impact& of, const SettledBed& bed, const ValidationOptions& 
 }
 
 namespace {
-
-/// Slope of the straight line through the points (ln x, ln y) by least squares
-double exponent(const std::vector<double>& x, const std::vector<double>& y)
-{
-    double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
-    const auto n = static_cast<double>(x.size());
-    for (std::size_t k = 0; k < x.size(); ++k) mean_x += std::log(x[k]) / n, mean_y += std::log(y[k]) / n;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        const double d = std::log(x[k]) - mean_x;
-        xx += d * d, xy += d * (std::log(y[k]) - mean_y);
-    }
-    return xy / xx;
-}
 
 std::vector<Impact> impacts(bool full)
 {

@@ -24,7 +24,8 @@
 #include "granular/validations/drum.hpp"
 
 #include "granular/case/split_mix.hpp"
-#include "io/error.hpp"
+#include "granular/validations/settling.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "io/message.hpp"
 
 #include <algorithm>
@@ -219,16 +220,12 @@ double DrumRun::omega() const { return std::sqrt(froude * drum.g / drum.radius);
 
 double surface_angle(const std::vector<double>& x, const std::vector<double>& surface, double radius)
 {
-    double n = 0, mean_x = 0, mean_z = 0, xx = 0, xz = 0;
-    const auto each = [&](const auto& f) {
-        for (std::size_t k = 0; k < x.size(); ++k)
-            if (std::abs(x[k]) < 0.4 * radius && std::isfinite(surface[k])) f(x[k], surface[k]);
-    };
-    each([&](double a, double z) { n += 1, mean_x += a, mean_z += z; });
-    if (n < 3) return none;
-    mean_x /= n, mean_z /= n;
-    each([&](double a, double z) { xx += (a - mean_x) * (a - mean_x), xz += (a - mean_x) * (z - mean_z); });
-    return -std::atan(xz / xx) * 180 / std::numbers::pi;
+    std::vector<double> of_x, of_z;
+    for (std::size_t k = 0; k < x.size(); ++k)
+        if (std::abs(x[k]) < 0.4 * radius && std::isfinite(surface[k]))
+            of_x.push_back(x[k]), of_z.push_back(surface[k]);
+    if (of_x.size() < 3) return none;
+    return -std::atan(StraightLine(of_x, of_z).b) * 180 / std::numbers::pi;
 }
 
 BedCase bed_case(const Drum& d)
@@ -260,18 +257,13 @@ std::vector<Vec3> settled_grains(const Drum& d, const ValidationOptions& options
         const std::vector<Particle> start = lattice(d);
         for (const Particle& p : start) world.add(p);
         const double weight = static_cast<double>(start.size()) * glass(d).density * of_grain(d) * d.g;
-        while (true) {
-            world.step(std::lround(0.01 / d.h));
-            progress(world.t() / longest_settling);
-            const double energy = world.kinetic_energy() / (weight * d.R);
-            if (world.t() > 0.1 && energy < settled_energy) break;
-            if (world.t() > longest_settling)
-                throw io::NumericalFailure(
-                    "not_settled",
-                    io::formatted("the grains of the drum have not settled after %g s: %.3g m g R per grain, "
-                                  "and %g is allowed",
-                                  longest_settling, energy, settled_energy));
-        }
+        granular::settle(world,
+                         {.what = "the bed of the drum",
+                          .unit = weight * d.R,
+                          .interval = std::lround(0.01 / d.h),
+                          .longest = longest_settling,
+                          .energy = settled_energy},
+                         progress);
         for (const Particle& p : now.grains())
             if (p.r.z < 0) centres.push_back(p.r);
     };

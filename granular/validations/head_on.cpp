@@ -7,6 +7,7 @@
 /// distances and all restitutions.
 
 #include "granular/validations/soft_sphere.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "granular/validations/validation.hpp"
 #include "granular/world/double_world.hpp"
 #include "io/message.hpp"
@@ -165,19 +166,6 @@ MomentumChange momentum_change(double drift, const ValidationOptions& options)
     return momentum_change;
 }
 
-/// Slope of the least-squares line through the points (log h, log e)
-double fitted_slope(const std::vector<double>& h, const std::vector<double>& e)
-{
-    double x_mean = 0, y_mean = 0, xx = 0, xy = 0;
-    const auto n = static_cast<double>(h.size());
-    for (std::size_t k = 0; k < h.size(); ++k) x_mean += std::log(h[k]) / n, y_mean += std::log(e[k]) / n;
-    for (std::size_t k = 0; k < h.size(); ++k) {
-        const double x = std::log(h[k]) - x_mean;
-        xx += x * x, xy += x * (std::log(e[k]) - y_mean);
-    }
-    return xy / xx;
-}
-
 /// Largest errors of one scheme at one step over all collisions: of World, in double precision, and the
 /// largest difference between the two
 struct SchemeErrors {
@@ -267,8 +255,8 @@ ValidationResult run(const ValidationOptions& options)
             options.progress(progress += 1.0 / static_cast<double>(std::size(schemes) * steps.size()));
         }
         if (s.first_order)
-            result.checks.push_back({std::string("order in double precision: ") + s.name(),
-                                     fitted_slope(steps, errors), 0.85, 1.15});
+            result.checks.push_back(
+                {std::string("order in double precision: ") + s.name(), exponent(steps, errors), 0.85, 1.15});
     }
     result.checks.push_back({"largest difference of World from double precision", difference, 0, 1e-4});
 

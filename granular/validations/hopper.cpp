@@ -10,6 +10,7 @@
 #include "granular/insertion/insertion.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "granular/validations/soft_sphere.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "granular/validations/validation.hpp"
 #include "io/message.hpp"
 
@@ -110,16 +111,13 @@ struct Flow {
     std::vector<double> mass;  ///< that has left until 0, sample, 2 sample, ... [kg]
 };
 
-/// Slope of a straight line through the points (k, y[k]) from k = begin to end
-double slope(const std::vector<double>& y, std::size_t begin, std::size_t end)
+/// Mass flow between the samples number begin and end, by least squares [kg/s]
+double rate_of(const std::vector<double>& mass, std::size_t begin, std::size_t end)
 {
-    const double middle = 0.5 * static_cast<double>(begin + end);
-    double xx = 0, xy = 0;
-    for (std::size_t k = begin; k <= end; ++k) {
-        const double x = static_cast<double>(k) - middle;
-        xx += x * x, xy += x * y[k];
-    }
-    return xy / xx;
+    std::vector<double> t, of;
+    for (std::size_t k = begin; k <= end; ++k)
+        t.push_back(static_cast<double>(k) * sample), of.push_back(mass[k]);
+    return StraightLine(t, of).b;
 }
 
 /// Discharge of a bed. With a refill [kg/s], grains fall on it from above.
@@ -155,24 +153,13 @@ Flow discharge(const std::vector<Grain>& bed, double outlet, double refill, cons
     }
     const auto begin = static_cast<std::size_t>(std::lround(flow_begin / sample)), end = flow.mass.size() - 1,
                half = (begin + end) / 2;
-    flow.rate = slope(flow.mass, begin, end) / sample;
-    flow.steady = slope(flow.mass, half, end) / slope(flow.mass, begin, half);
+    flow.rate = rate_of(flow.mass, begin, end);
+    flow.steady = rate_of(flow.mass, half, end) / rate_of(flow.mass, begin, half);
     flow.left = flow.mass.back();
     const double all = initial + insertions.mass();
     flow.balance = (inside() + flow.left - all) / all;
     options.include(io::formatted("outlet of %g mm", 1e3 * outlet), world);
     return flow;
-}
-
-/// Least squares of y = a + b x
-std::pair<double, double> line(const std::vector<double>& x, const std::vector<double>& y)
-{
-    const auto n = static_cast<double>(x.size());
-    double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) mean_x += x[k] / n, mean_y += y[k] / n;
-    for (std::size_t k = 0; k < x.size(); ++k)
-        xx += (x[k] - mean_x) * (x[k] - mean_x), xy += (x[k] - mean_x) * (y[k] - mean_y);
-    return {mean_y - xy / xx * mean_x, xy / xx};
 }
 
 ValidationResult run(const ValidationOptions& options)
@@ -209,13 +196,13 @@ ValidationResult run(const ValidationOptions& options)
         unsteady = max_or_nan(unsteady, std::abs(f.steady - 1));
     };
     constexpr double k_beverloo = 1.4, of_checks = 9 * d;
-    std::vector<double> x, y, log_x, log_y;
+    std::vector<double> x, y, open, rates;  // open: D - k d
     double rate = 0;
     for (const double D : outlets) {
         const Flow flow = flow_of(bed, D, 0);
         add("whole", D, flow, height);
         x.push_back(D), y.push_back(std::pow(flow.rate, 0.4));
-        log_x.push_back(std::log(D - k_beverloo * d)), log_y.push_back(std::log(flow.rate));
+        open.push_back(D - k_beverloo * d), rates.push_back(flow.rate);
         if (D == of_checks) rate = flow.rate;
     }
     std::vector<Grain> lower;
@@ -223,12 +210,12 @@ ValidationResult run(const ValidationOptions& options)
                  [&](const Grain& p) { return p.r.z + p.radius < 0.7 * height; });
     const Flow low = flow_of(lower, of_checks, 0), refilled = flow_of(bed, of_checks, rate);
     add("lower", of_checks, low, 0.7 * height), add("refilled", of_checks, refilled, height);
-    const auto [a, b] = line(x, y);
-    const double C = std::pow(b, 2.5) / (density * std::sqrt(g)), k = -a / b / d;
+    const StraightLine line(x, y);
+    const double C = std::pow(line.b, 2.5) / (density * std::sqrt(g)), k = -line.a / line.b / d;
     ValidationResult result;
     result.tables = {study, motion};
     result.checks = {
-        {"exponent of D - 1.4 d", line(log_x, log_y).second, 2.35, 2.65},
+        {"exponent of D - 1.4 d", exponent(open, rates), 2.35, 2.65},
         {"C with the exponent 5/2", C, 0.55, 0.65},
         {"k with the exponent 5/2", k, 1.2, 1.6},
         {"flow of a bed of 0.7 times the height, over that of the whole one", low.rate / rate, 0.95, 1.05},

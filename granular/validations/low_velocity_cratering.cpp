@@ -20,6 +20,8 @@
 #include "granular/validations/low_velocity_cratering.hpp"
 
 #include "granular/case/split_mix.hpp"
+#include "granular/validations/settling.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 
@@ -90,13 +92,6 @@ struct Cylinder {
         o.gravity = {0, 0, -g}, o.h = h, o.device = device;
         o.delete_lost = true;  // a bead may be thrown out of the domain in reduced gravity
         return o;
-    }
-
-    /// Kinetic energy per bead [m g R], g that of the earth
-    double energy() const
-    {
-        return world.kinetic_energy() /
-               (static_cast<double>(world.count()) * glass().density * of_bead * earth * R);
     }
 
     /// Height of the lowest point of the sphere at its first contact when it falls at this place [m]
@@ -173,16 +168,14 @@ std::vector<Vec3> settled_beads(const BeadCylinder& c, const ValidationOptions& 
             p.v = (start_speed / direction.norm()) * direction;
             now.world.add(p);
         }
-        do {
-            now.world.step(std::lround(0.01 / c.h));
-            progress(now.world.t() / longest_settling);
-            if (now.world.t() > longest_settling)
-                throw io::NumericalFailure(
-                    "not_settled",
-                    io::formatted("the bed of beads has not settled after %g s: %.3g m g R per bead, and %g "
-                                  "is allowed",
-                                  longest_settling, now.energy(), settled_energy));
-        } while (now.world.t() < 0.1 || now.energy() > settled_energy);
+        granular::settle(
+            now.world,
+            {.what = "the bed of beads",
+             .unit = static_cast<double>(now.world.count()) * glass().density * of_bead * earth * R,
+             .interval = std::lround(0.01 / c.h),
+             .longest = longest_settling,
+             .energy = settled_energy},
+            progress);
         for (const Particle& p : now.world.particles()) beads.push_back(p.r);
     };
     options.beds.bed(bed_case(c), settle, [&](io::Archive& a) { a.list(beads); });
@@ -331,12 +324,10 @@ private:
     /// m/s².
     static double peak_of_line(double mu_r, double speed)
     {
-        double n = 0, v = 0, peak = 0, vv = 0, v_peak = 0;
+        std::vector<double> speeds, peaks;
         for (const Published& p : published)
-            if (p.mu_r == mu_r && p.peak)
-                n += 1, v += p.speed, peak += *p.peak, vv += p.speed * p.speed, v_peak += p.speed * *p.peak;
-        const double slope = (n * v_peak - v * peak) / (n * vv - v * v);
-        return peak / n + slope * (speed - v / n);
+            if (p.mu_r == mu_r && p.peak) speeds.push_back(p.speed), peaks.push_back(*p.peak);
+        return StraightLine(speeds, peaks).at(speed);
     }
 
     void against_published()

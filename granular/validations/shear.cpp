@@ -13,7 +13,8 @@
 
 #include "granular/case/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
-#include "io/error.hpp"
+#include "granular/validations/settling.hpp"
+#include "granular/validations/straight_line.hpp"
 #include "io/message.hpp"
 
 #include <algorithm>
@@ -119,18 +120,13 @@ struct Box {
 
     void settle(const std::function<void(double)>& progress)
     {
-        while (true) {
-            world.step(std::lround(0.01 / box.h));
-            progress(world.t() / longest_settling);
-            const double energy =
-                world.kinetic_energy() / (static_cast<double>(world.count()) * of_grain() * g * box.R);
-            if (world.t() > 0.1 && energy < settled_energy) return;
-            if (world.t() > longest_settling)
-                throw io::NumericalFailure(
-                    "not_settled", io::formatted("the sample has not settled after %g s: %.3g m g R per "
-                                                 "grain, and %g is allowed",
-                                                 longest_settling, energy, settled_energy));
-        }
+        granular::settle(world,
+                         {.what = "the sample",
+                          .unit = static_cast<double>(world.count()) * of_grain() * g * box.R,
+                          .interval = std::lround(0.01 / box.h),
+                          .longest = longest_settling,
+                          .energy = settled_energy},
+                         progress);
     }
 
     /// Puts the lid on the highest grain, free to move vertically. Its load grows linearly for half of the
@@ -253,23 +249,6 @@ ShearRecord shear(const ShearTest& test, const std::string& sample, const Valida
 
 namespace {
 
-/// Straight line y = a + b x by least squares, and its coefficient of determination r²
-struct Line {
-    double a = 0, b = 0, r2 = 0;
-
-    Line(const std::vector<double>& x, const std::vector<double>& y)
-    {
-        double mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
-        const auto n = static_cast<double>(x.size());
-        for (std::size_t k = 0; k < x.size(); ++k) mean_x += x[k] / n, mean_y += y[k] / n;
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const double u = x[k] - mean_x, v = y[k] - mean_y;
-            xx += u * u, xy += u * v, yy += v * v;
-        }
-        b = xy / xx, a = mean_y - b * mean_x, r2 = xy * xy / (xx * yy);
-    }
-};
-
 constexpr double reference_stress = 6.4e3, speed = 0.01;
 
 /// The four normal stresses; then at one stress half of the speed, and grains without friction
@@ -312,7 +291,7 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
             if (test.stress == reference_stress) reference = ratio;
         }
     }
-    const Line line(sigma, tau);
+    const StraightLine line(sigma, tau);
     return {{"largest over smallest tau_peak/sigma of the four stresses", largest / least, 1, 1.1},
             {"r^2 of the line tau_peak(sigma)", line.r2, 0.99, 1},
             {"intercept of this line over the largest tau_peak", line.a / tau.back(), -0.05, 0.05},

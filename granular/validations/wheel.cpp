@@ -20,7 +20,7 @@
 
 #include "granular/case/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
-#include "io/error.hpp"
+#include "granular/validations/settling.hpp"
 #include "io/message.hpp"
 
 #include <algorithm>
@@ -114,18 +114,13 @@ struct Soil {
 
     void settle(const std::function<void(double)>& progress)
     {
-        while (true) {
-            world.step(std::lround(0.02 / bed.h));
-            progress(world.t() / longest_settling);
-            const double energy =
-                world.kinetic_energy() / (static_cast<double>(world.count()) * of_grain() * g * bed.R);
-            if (world.t() > 0.1 && energy < settled_energy) return;
-            if (world.t() > longest_settling)
-                throw io::NumericalFailure(
-                    "not_settled", io::formatted("the bed has not settled after %g s: %.3g m g R per grain, "
-                                                 "and %g is allowed",
-                                                 longest_settling, energy, settled_energy));
-        }
+        granular::settle(world,
+                         {.what = "the bed",
+                          .unit = static_cast<double>(world.count()) * of_grain() * g * bed.R,
+                          .interval = std::lround(0.02 / bed.h),
+                          .longest = longest_settling,
+                          .energy = settled_energy},
+                         progress);
     }
 };
 

@@ -182,10 +182,6 @@ const bool registered =
                                       .example = R"("name": "obstacle", "radius": 0.01, "r": [0, 0, 0.02])"},
                                      read_round<Boundary::Shape::sphere>});
 
-}  // namespace
-
-namespace {
-
 /// A matrix of three rows, row by row
 std::array<double, 9> matrix(ObjectReader& o, const std::string& key)
 {

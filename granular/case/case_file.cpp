@@ -378,9 +378,7 @@ private:
                                      spec.region.description());
         o.finish();
         largest = std::max(largest, 2 * spec.sizes.largest());
-        o.located([&] {  // refuses particles that the world refuses
-            for (const Particle& p : spec.samples()) World(world, materials).expect({p}, 0);
-        });
+        o.located([&] { World(world, materials).expect(spec.samples(), 0); });  // may refuse them
         all.emplace_back(spec);
     }
 

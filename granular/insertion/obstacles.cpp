@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/insertion/obstacles.hpp"
 
-#include "granular/mesh/mesh_shapes.hpp"
+#include "granular/mesh/triangle_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,14 +53,10 @@ Obstacles::Obstacles(const World& world, const Vec3& low, const Vec3& high, doub
     const Meshes& meshes = world.all_meshes();
     for (std::uint32_t t = 0; t < meshes.triangle.size(); ++t) {
         const Boundary& b = world.all_boundaries()[meshes.triangle[t].boundary];
-        Vec3 from{1e300, 1e300, 1e300}, to = -from;
-        for (const std::uint32_t v : meshes.triangle[t].vertex) {
-            const Vec3 at = b.r + rotated(b.p, meshes.vertex[v]);
-            from = {std::min(from.x, at.x), std::min(from.y, at.y), std::min(from.z, at.z)};
-            to = {std::max(to.x, at.x), std::max(to.y, at.y), std::max(to.z, at.z)};
-        }
-        if (from.x < high.x + R && to.x > low.x - R && from.y < high.y + R && to.y > low.y - R &&
-            from.z < high.z + R && to.z > low.z - R)
+        BoundingBox box;
+        for (const std::uint32_t v : meshes.triangle[t].vertex) box.add(b.r + rotated(b.p, meshes.vertex[v]));
+        if (box.low.x < high.x + R && box.high.x > low.x - R && box.low.y < high.y + R &&
+            box.high.y > low.y - R && box.low.z < high.z + R && box.high.z > low.z - R)
             near.push_back(Surfaces::first_triangle + t);
     }
 }

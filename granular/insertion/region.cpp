@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/insertion/region.hpp"
 
-#include "io/message.hpp"
+#include "granular/world/value_text.hpp"
 
 #include <cmath>
 
@@ -15,8 +15,6 @@ Vec3 perpendicular(const Vec3& a)
     const Vec3 other = std::abs(a.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, across = a.cross(other);
     return (1 / across.norm()) * across;
 }
-
-std::string shown(const Vec3& v) { return io::formatted("(%.9g, %.9g, %.9g)", v.x, v.y, v.z); }
 
 }  // namespace
 
@@ -46,6 +44,7 @@ std::pair<Vec3, Vec3> InsertionRegion::bounds(double R) const
 
 std::string InsertionRegion::description() const
 {
+    using detail::shown;
     if (shape == Shape::box) return "box from " + shown(low) + " to " + shown(high);
     if (shape == Shape::disk)
         return "disk of radius " + io::shortest(radius) + " around " + shown(r) + " with the normal " +

@@ -20,27 +20,26 @@ std::string begin_of_file(const std::string& type, const std::string& of_file = 
            "\" version=\"1.0\" byte_order=\"LittleEndian\"" + of_file + ">\n<" + type + attributes + ">\n";
 }
 
-/// An attribute with three pairs or numbers
-template <class Value>
-std::string attribute(const char* name, const Value& value)
+/// An attribute with three values. append(text, k) appends value k.
+template <class Append>
+std::string attribute(const char* name, const Append& append)
 {
     std::string text = std::string(" ") + name + "=\"";
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (axis > 0) text += ' ';
-        value(text, axis);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (k > 0) text += ' ';
+        append(text, k);
     }
     return text + '"';
 }
-
-struct Extent {
-    const std::array<int, 3>& cells;
-    void operator()(std::string& text, std::size_t axis) const { text += "0 " + std::to_string(cells[axis]); }
-};
-
-struct Numbers {
-    const std::array<double, 3>& number;
-    void operator()(std::string& text, std::size_t axis) const { append_number(text, number[axis]); }
-};
+std::string attribute(const char* name, const std::array<double, 3>& numbers)
+{
+    return attribute(name, [&](std::string& text, std::size_t k) { append_number(text, numbers[k]); });
+}
+std::string extent(const char* name, const std::array<int, 3>& cells)
+{
+    return attribute(name,
+                     [&](std::string& text, std::size_t k) { text += "0 " + std::to_string(cells[k]); });
+}
 
 std::string escaped(const std::string& name)
 {
@@ -74,9 +73,8 @@ VtkPolyData::VtkPolyData(std::initializer_list<std::pair<const char*, std::size_
 VtkImageData::VtkImageData(const std::array<double, 3>& low, const std::array<double, 3>& edge,
                            const std::array<int, 3>& cells)
     : VtkFile("ImageData",
-              attribute("WholeExtent", Extent{cells}) + attribute("Origin", Numbers{low}) +
-                  attribute("Spacing", Numbers{edge}),
-              attribute("Extent", Extent{cells}))
+              extent("WholeExtent", cells) + attribute("Origin", low) + attribute("Spacing", edge),
+              extent("Extent", cells))
 {}
 
 void VtkFile::section(const std::string& name)

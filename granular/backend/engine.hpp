@@ -70,8 +70,9 @@ public:
     virtual void find_neighbours(const Domain& domain) = 0;
     /// See find_loads. Without `store`, the CPU computes only the loads of the pairs of SweepPlan::list here,
     /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other
-    /// ones in advance().
-    virtual void find_loads(const Domain& domain, float h, bool store) = 0;
+    /// ones in advance(). `path`: upper bound of the path of any particle relative to any boundary since
+    /// find_neighbours() [m].
+    virtual void find_loads(const Domain& domain, float h, bool store, double path) = 0;
     /// See advance.
     virtual float advance(const StepParameters& step) = 0;
     /// Largest displacement of a particle since the last neighbour search [units]

@@ -4,6 +4,7 @@
 
 #include "granular/backend/engine.hpp"
 #include "granular/core/hand_over.hpp"
+#include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"
 
 #include <algorithm>
@@ -120,7 +121,10 @@ public:
     }
     void arrays_modified() override
     {
-        if constexpr (!is_cpu) copy(own, host);
+        if constexpr (is_cpu)
+            triangle_contacts.wake();
+        else
+            copy(own, host);
     }
 
     void set_laws(const std::vector<PairLaw>& all, const std::vector<std::uint8_t>& law_of_pair,
@@ -197,10 +201,12 @@ public:
                 list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), surfaces()}, with_free_boundary);
         triangle_pairs = 0;
         if (triangle.size() > 0) triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
+        if constexpr (is_cpu)
+            triangle_contacts.list(pair_view(), surfaces(), with_triangle.data(), triangle_pairs);
         if (watched) prepare_watch();
     }
 
-    void find_loads(const Domain& domain, float h, bool store) override
+    void find_loads(const Domain& domain, float h, bool store, [[maybe_unused]] double path) override
     {
         host_is_current = false;
         if constexpr (is_cpu) {
@@ -215,15 +221,17 @@ public:
         PairView pairs = pair_view();
         if (watched) pairs.largest_overlap = overlaps.data();
         const ParticleView particles = particle_view(domain, own.particle);
-        if (triangle_pairs > 0)
-            par::for_each(
-                on, triangle_pairs,
-                HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
         if constexpr (is_cpu) {
-            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
-                              static_cast<std::uint32_t>(plan.list.size()));
+            // Those with triangles are the last ones of the list.
+            const auto others = static_cast<std::uint32_t>(plan.list.size()) - triangle_pairs;
+            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
+            triangle_contacts.find_loads(on, particles, pairs, law_view(h), own.pairs.start.data(), path);
             pending = {particles, pairs, law_view(h)};
         } else {
+            if (triangle_pairs > 0)
+                par::for_each(
+                    on, triangle_pairs,
+                    HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
             granular::find_loads(on, particles, pairs, law_view(h));
         }
     }
@@ -383,7 +391,8 @@ public:
                with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
                block_start.bytes() + block_surface.bytes() + triangle.bytes() + vertex.bytes() +
-               vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes();
+               vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes() +
+               triangle_contacts.bytes();
     }
 
 private:
@@ -550,6 +559,7 @@ private:
     par::Array<Backend, Vec3> vertex, vertex_normal;
     par::Array<Backend, std::uint32_t> fan_start, fan;  ///< see MeshView
     SweepPlan plan;                                     ///< of the CPU
+    TriangleContacts triangle_contacts;                 ///< of the CPU
     /// Arguments of find_loads() for the pass in advance()
     struct Pending {
         ParticleView particles;

@@ -218,7 +218,7 @@ void World::find_neighbours() const
                "radii; particles",
                count());
     }
-    particle_displacement = boundary_displacement = 0;
+    particle_displacement = boundary_displacement = path = 0;
     boundaries_at_build.clear();
     for (const Boundary& b : boundaries) boundaries_at_build.emplace_back(b);
     ++rebuild_count;
@@ -336,7 +336,7 @@ void World::one_step()
         if (verlet) send_boundaries();  // they have moved in this step
         take(times.neighbours);
         in_step = true;
-        engine->find_loads(domain, h, store);
+        engine->find_loads(domain, h, store, path);
         take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
@@ -359,7 +359,13 @@ void World::one_step()
         const float before = std::exchange(max_speed, std::sqrt(engine->advance(step_parameters(part))));
         const double displacement = options.h * static_cast<double>(par::nan_max(before, max_speed));
         check_displacement(displacement);
+        // The displacement of `chung` may exceed h times the speeds at both ends of the step.
+        path += options.scheme == Scheme::chung ? 2 * displacement : displacement;
         return displacement;
+    };
+    const auto move = [&] {
+        const double displacement = move_boundaries();
+        boundary_displacement += displacement, path += displacement;
     };
     send_boundaries();
     if (!is_posed()) move_attached();
@@ -369,7 +375,7 @@ void World::one_step()
     }
     if (verlet) {
         particle_displacement += advance(Part::before_loads);
-        boundary_displacement += move_boundaries();
+        move();
         if (!is_posed()) move_attached();
         find_loads(false);
         accelerate_tools();
@@ -382,7 +388,7 @@ void World::one_step()
         watch_loads();
         particle_displacement += advance(Part::whole);
         watch_advance();
-        boundary_displacement += move_boundaries();
+        move();
         if (!is_posed()) move_attached();
     }
     boundaries_changed = false;

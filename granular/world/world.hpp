@@ -393,6 +393,8 @@ private:
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
     /// [m]; infinite if the list must be rebuilt. The list is a cache, therefore these members are mutable.
     mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
+    /// Upper bound of the path of any particle relative to any boundary since the list was built [m]
+    mutable double path = 0;
     struct BoundaryPlace {
         Vec3 r, axis;
         EulerParameters<double> p;

@@ -52,7 +52,7 @@ struct Surfaces {
         const double height = mesh.triangle[t].face.height(p);
         return height < radius + skin && -height < radius + skin &&
                (p - granular::closest_point(mesh, t, p)).norm() < radius + skin &&
-               may_own(mesh, t, p, 1.01 * skin);
+               distance_to_ownership(mesh, t, p) < 1.01 * skin;
     }
     /// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is
     /// closest to the centre of the particle, or to the one at `depth` below it [m]

@@ -54,8 +54,8 @@ public:
     /// law_of: index of the law of a pair of materials, materials × materials
     virtual void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                           std::uint32_t materials) = 0;
-    /// The triangles of the boundaries with Shape::mesh
-    virtual void set_meshes(const Meshes& meshes) = 0;
+    /// The triangles of the boundaries with Shape::mesh, which the engine shares with the caller
+    virtual void set_meshes(std::shared_ptr<const Meshes> meshes) = 0;
     /// Returns whether they differ from those of the previous call.
     virtual bool set_boundaries(const std::vector<Boundary>& boundaries) = 0;
     /// External forces by particle id [N]; an empty list means none.

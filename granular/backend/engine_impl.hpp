@@ -138,11 +138,14 @@ public:
         send(laws, all), send(law_of, law_of_pair);
     }
 
-    void set_meshes(const Meshes& all) override
+    void set_meshes(std::shared_ptr<const Meshes> all) override
     {
-        meshes = all;
-        send(triangle, all.triangle), send(vertex, all.vertex), send(vertex_normal, all.vertex_normal);
-        send(fan_start, all.fan_start), send(fan, all.fan);
+        meshes = std::move(all);
+        if constexpr (!is_cpu) {
+            send(triangle, meshes->triangle), send(vertex, meshes->vertex);
+            send(vertex_normal, meshes->vertex_normal);
+            send(fan_start, meshes->fan_start), send(fan, meshes->fan);
+        }
         blocks = {};
     }
 
@@ -181,7 +184,7 @@ public:
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
-        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, meshes))
+        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, *meshes))
             send(block_start, blocks.start), send(block_surface, blocks.surface);
         BoundaryBlockView near = blocks.view();
         near.start = block_start.data(), near.surface = block_surface.data();
@@ -200,7 +203,8 @@ public:
             free_pairs =
                 list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), surfaces()}, with_free_boundary);
         triangle_pairs = 0;
-        if (triangle.size() > 0) triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
+        if (!meshes->triangle.empty())
+            triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
         if constexpr (is_cpu)
             triangle_contacts.list(pair_view(), surfaces(), with_triangle.data(), triangle_pairs);
         if (watched) prepare_watch();
@@ -392,7 +396,7 @@ public:
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
                block_start.bytes() + block_surface.bytes() + triangle.bytes() + vertex.bytes() +
                vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes() +
-               triangle_contacts.bytes();
+               triangle_contacts.bytes() + (is_cpu ? meshes->bytes() : 0);
     }
 
 private:
@@ -418,6 +422,7 @@ private:
 
     Surfaces surfaces() const
     {
+        if constexpr (is_cpu) return {boundaries.data(), meshes->view()};
         return {boundaries.data(),
                 {triangle.data(), vertex.data(), vertex_normal.data(), fan_start.data(), fan.data()}};
     }
@@ -554,12 +559,13 @@ private:
     std::vector<Boundary> last_boundaries;
     BoundaryBlocks blocks;  ///< of last_boundaries
     par::Array<Backend, std::uint32_t> block_start, block_surface;
-    Meshes meshes;
+    std::shared_ptr<const Meshes> meshes = std::make_shared<Meshes>();
+    // the same in the memory of a GPU; see MeshView
     par::Array<Backend, MeshTriangle> triangle;
     par::Array<Backend, Vec3> vertex, vertex_normal;
-    par::Array<Backend, std::uint32_t> fan_start, fan;  ///< see MeshView
-    SweepPlan plan;                                     ///< of the CPU
-    TriangleContacts triangle_contacts;                 ///< of the CPU
+    par::Array<Backend, std::uint32_t> fan_start, fan;
+    SweepPlan plan;                      ///< of the CPU
+    TriangleContacts triangle_contacts;  ///< of the CPU
     /// Arguments of find_loads() for the pass in advance()
     struct Pending {
         ParticleView particles;

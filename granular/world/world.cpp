@@ -106,11 +106,13 @@ int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
     check_mesh(mesh, name);
     if (b.shape != Boundary::Shape::mesh)
         refuse(name, "the shape of a boundary with triangles must be a mesh", static_cast<int>(b.shape));
-    if (meshes.triangle.size() + mesh.triangle.size() > TriangleMesh::most_triangles)
-        refuse(name, "all meshes must not have more than 2^22 triangles",
-               meshes.triangle.size() + mesh.triangle.size());
+    const std::size_t triangles = meshes->triangle.size() + mesh.triangle.size();
+    if (triangles > TriangleMesh::most_triangles)
+        refuse(name, "all meshes must not have more than 2^22 triangles", triangles);
     const int number = add_boundary(b);
-    meshes.add(mesh, static_cast<std::uint32_t>(number), two_sided);
+    // The engine may share them.
+    if (meshes.use_count() > 1) meshes = std::make_shared<Meshes>(*meshes);
+    meshes->add(mesh, static_cast<std::uint32_t>(number), two_sided);
     meshes_changed = true;
     return number;
 }
@@ -276,6 +278,7 @@ double World::move_boundaries()
     const double h = options.h;
     double largest = 0;
     moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
+    auto part = meshes->part.begin();
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
         moved[k] = {b.v, b.omega};
@@ -285,9 +288,11 @@ double World::move_boundaries()
         const double angle = h * b.omega.norm();
         if (b.shape == Boundary::Shape::mesh) {
             if (angle > 0) b.p = turned(b.p, h * b.omega);
-            if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(k)))
+            if (part != meshes->part.end() && part->boundary == k) {
                 // also of the centres of particles in contact
                 displacement += angle * (part->radius + double{domain.largest} + domain.skin);
+                ++part;
+            }
         } else if (b.shape != Boundary::Shape::sphere && b.omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * b.omega;
             const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +

@@ -184,10 +184,13 @@ public:
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
-        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, *meshes))
-            send(block_start, blocks.start), send(block_surface, blocks.surface);
+        const bool new_lists =
+            blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, *meshes);
         BoundaryBlockView near = blocks.view();
-        near.start = block_start.data(), near.surface = block_surface.data();
+        if constexpr (!is_cpu) {
+            if (new_lists) resting.send(*this, blocks.resting), moving.send(*this, blocks.moving);
+            resting.replace(near.resting), moving.replace(near.moving);
+        }
         neighbours.find({.domain = domain,
                          .law_of = one_law ? nullptr : law_of.data(),
                          .materials = materials,
@@ -394,9 +397,9 @@ public:
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
                with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
-               block_start.bytes() + block_surface.bytes() + triangle.bytes() + vertex.bytes() +
-               vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes() +
-               triangle_contacts.bytes() + (is_cpu ? meshes->bytes() : 0);
+               resting.bytes() + moving.bytes() + triangle.bytes() + vertex.bytes() + vertex_normal.bytes() +
+               fan_start.bytes() + fan.bytes() + with_triangle.bytes() + triangle_contacts.bytes() +
+               (is_cpu ? meshes->bytes() : 0);
     }
 
 private:
@@ -558,7 +561,19 @@ private:
     par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
     BoundaryBlocks blocks;  ///< of last_boundaries
-    par::Array<Backend, std::uint32_t> block_start, block_surface;
+    /// Lists of `blocks` in the memory of a GPU
+    struct SurfaceArrays {
+        par::Array<Backend, std::uint32_t> start, surface;
+        void send(EngineOn& engine, const SurfaceLists& from)
+        {
+            engine.send(start, from.start), engine.send(surface, from.surface);
+        }
+        void replace(SurfaceListView& view) const
+        {
+            view.start = start.data(), view.surface = surface.data();
+        }
+        std::size_t bytes() const { return start.bytes() + surface.bytes(); }
+    } resting, moving;
     std::shared_ptr<const Meshes> meshes = std::make_shared<Meshes>();
     // the same in the memory of a GPU; see MeshView
     par::Array<Backend, MeshTriangle> triangle;

@@ -146,8 +146,8 @@ HILDA_HD inline Nearest nearest(const MeshView& mesh, std::uint32_t t, const Vec
 namespace detail {
 
 /// Lower bound of the distance from p to the planes that bisect the smooth edges of the triangle t which are
-/// concave on the front, or on the back for sign = -1 [m]: negative if p is beyond one of these planes, closer
-/// to the plane of the neighbour
+/// concave on the front, or on the back for sign = -1 [m]: negative if p is beyond one of these planes,
+/// closer to the plane of the neighbour
 HILDA_HD inline double distance_to_bisector(const MeshView& mesh, std::uint32_t t, const Vec3& p, double sign)
 {
     const MeshTriangle& T = mesh.triangle[t];

@@ -4,7 +4,8 @@
 /// The neighbour list has a candidate for each triangle that may come into contact with a particle before the
 /// next search. Few candidates need the search for the closest feature in each step. A candidate is
 /// - in a face: the closest point is inside of the triangle; the distance is the height above its plane,
-/// - asleep: it has no contact, because the triangle owns no local minimum of the distance or is too far away,
+/// - asleep: it has no contact, because the triangle owns no local minimum of the distance or is too far
+///   away,
 /// - examined: the closest point is on or near an edge or a vertex; nearest() is called in each step.
 ///
 /// A candidate remains in a face or asleep until the particle has moved by a margin, see distance_in_face()

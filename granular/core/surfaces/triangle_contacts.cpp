@@ -62,7 +62,7 @@ struct TriangleLoop : detail::ContactPacks {
     /// Lists the contacts of a chunk and those that have ended.
     void find_contacts(std::uint32_t number, Contacts& to) const
     {
-        const std::uint32_t begin = all.first[number], end = all.first[number + 1],
+        const std::uint32_t begin = all.first[number], end = all.end[number],
                             end_of_faces = begin + all.faces[number];
         const auto lanes_before = [](std::uint32_t first, std::uint32_t last) {
             return last - first < lanes ? (1u << (last - first)) - 1 : (1u << lanes) - 1;
@@ -174,7 +174,7 @@ struct TriangleLoop : detail::ContactPacks {
 
     void put_faces_first(std::uint32_t number) const
     {
-        std::uint32_t a = all.first[number], b = all.first[number + 1];
+        std::uint32_t a = all.first[number], b = all.end[number];
         const std::uint32_t begin = a;
         while (true) {
             while (a < b && all.in_face[a] != 0) ++a;
@@ -265,26 +265,25 @@ struct TriangleLoop : detail::ContactPacks {
 void TriangleContacts::list(const PairView& pairs, const Surfaces& surfaces, const std::uint32_t* which,
                             std::uint32_t count)
 {
-    // A chunk has list_chunk candidates or more, all those of its particles.
-    first.assign(1, 0);
+    first.clear(), end.clear();
     longest = 0;
-    for (std::uint32_t c = list_chunk; c < count; c = first.back() + list_chunk) {
-        while (c < count && pairs.i[which[c]] == pairs.i[which[c - 1]]) ++c;
-        if (c == count) break;
-        first.push_back(c);
+    std::uint32_t size = 0;
+    for (std::uint32_t begin = 0, next = 0; begin < count; begin = next) {
+        next = std::min(begin + list_chunk, count);
+        while (next < count && pairs.i[which[next]] == pairs.i[which[next - 1]]) ++next;
+        first.push_back(size), end.push_back(size + (next - begin));
+        size = end.back() + lanes;
+        longest = std::max(longest, next - begin);
     }
-    if (count > 0) first.push_back(count);
-    for (std::size_t k = 1; k < first.size(); ++k) longest = std::max(longest, first[k] - first[k - 1]);
-
-    // Packs read beyond the last candidate.
-    const std::size_t size = count + (count > 0 ? lanes : 0);
     for (auto* values : {&n_x, &n_y, &n_z, &offset}) values->resize(size);
     for (auto* values : {&pair, &particle, &surface, &boundary}) values->assign(size, 0);
-    par::for_each(par::Cpu(), count, [&](std::uint32_t c) {
-        pair[c] = which[c], particle[c] = pairs.i[which[c]];
-        surface[c] = pairs.j[which[c]] & ~PairView::boundary_bit;
-        boundary[c] = surfaces.boundary_of(surface[c]);
-    });
+    std::uint32_t c = 0;
+    for (std::size_t k = 0; k < first.size(); ++k)
+        for (std::uint32_t m = first[k]; m < end[k]; ++m, ++c) {
+            pair[m] = which[c], particle[m] = pairs.i[which[c]];
+            surface[m] = pairs.j[which[c]] & ~PairView::boundary_bit;
+            boundary[m] = surfaces.boundary_of(surface[m]);
+        }
     wake();
 }
 
@@ -292,7 +291,7 @@ void TriangleContacts::wake()
 {
     awake_at.assign(pair.size(), -std::numeric_limits<float>::infinity());
     in_face.assign(pair.size(), 0);
-    faces.assign(first.size() - 1, 0);
+    faces.assign(first.size(), 0);
 }
 
 void TriangleContacts::find_loads(par::Cpu cpu, const ParticleView& particles, const PairView& pairs,
@@ -304,7 +303,7 @@ void TriangleContacts::find_loads(par::Cpu cpu, const ParticleView& particles, c
 std::size_t TriangleContacts::bytes() const
 {
     const auto of = [](const auto&... values) { return (... + (values.capacity() * sizeof values[0])); };
-    return of(first, faces, n_x, n_y, n_z, offset, awake_at, in_face, pair, particle, surface, boundary);
+    return of(first, end, faces, n_x, n_y, n_z, offset, awake_at, in_face, pair, particle, surface, boundary);
 }
 
 }  // namespace hilda::granular

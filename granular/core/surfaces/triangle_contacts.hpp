@@ -35,9 +35,9 @@ public:
 
     std::size_t bytes() const;
 
-    /// Chunk k has the candidates first[k] … first[k + 1] - 1, all those of its particles. The first
-    /// `faces[k]` of them are in a face.
-    std::vector<std::uint32_t> first = {0}, faces;
+    /// Chunk k has the candidates first[k] … end[k] - 1, all those of its particles. The first `faces[k]` of
+    /// them are in a face. Packs read beyond the end, where no other thread writes.
+    std::vector<std::uint32_t> first, end, faces;
     std::uint32_t longest = 0;  ///< number of candidates of the longest chunk
 
     // The candidates; arrays, because packs of consecutive ones are read

@@ -54,8 +54,8 @@ public:
     /// law_of: index of the law of a pair of materials, materials × materials
     virtual void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                           std::uint32_t materials) = 0;
-    /// The triangles of the boundaries with Shape::mesh
-    virtual void set_meshes(const Meshes& meshes) = 0;
+    /// The triangles of the boundaries with Shape::mesh, which the engine shares with the caller
+    virtual void set_meshes(std::shared_ptr<const Meshes> meshes) = 0;
     /// Returns whether they differ from those of the previous call.
     virtual bool set_boundaries(const std::vector<Boundary>& boundaries) = 0;
     /// External forces by particle id [N]; an empty list means none.
@@ -70,8 +70,9 @@ public:
     virtual void find_neighbours(const Domain& domain) = 0;
     /// See find_loads. Without `store`, the CPU computes only the loads of the pairs of SweepPlan::list here,
     /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other
-    /// ones in advance().
-    virtual void find_loads(const Domain& domain, float h, bool store) = 0;
+    /// ones in advance(). `path`: upper bound of the path of any particle relative to any boundary since
+    /// find_neighbours() [m].
+    virtual void find_loads(const Domain& domain, float h, bool store, double path) = 0;
     /// See advance.
     virtual float advance(const StepParameters& step) = 0;
     /// Largest displacement of a particle since the last neighbour search [units]

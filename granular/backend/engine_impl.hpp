@@ -4,6 +4,7 @@
 
 #include "granular/backend/engine.hpp"
 #include "granular/core/hand_over.hpp"
+#include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"
 
 #include <algorithm>
@@ -120,7 +121,10 @@ public:
     }
     void arrays_modified() override
     {
-        if constexpr (!is_cpu) copy(own, host);
+        if constexpr (is_cpu)
+            triangle_contacts.wake();
+        else
+            copy(own, host);
     }
 
     void set_laws(const std::vector<PairLaw>& all, const std::vector<std::uint8_t>& law_of_pair,
@@ -134,11 +138,14 @@ public:
         send(laws, all), send(law_of, law_of_pair);
     }
 
-    void set_meshes(const Meshes& all) override
+    void set_meshes(std::shared_ptr<const Meshes> all) override
     {
-        meshes = all;
-        send(triangle, all.triangle), send(vertex, all.vertex), send(vertex_normal, all.vertex_normal);
-        send(fan_start, all.fan_start), send(fan, all.fan);
+        meshes = std::move(all);
+        if constexpr (!is_cpu) {
+            send(triangle, meshes->triangle), send(vertex, meshes->vertex);
+            send(vertex_normal, meshes->vertex_normal);
+            send(fan_start, meshes->fan_start), send(fan, meshes->fan);
+        }
         blocks = {};
     }
 
@@ -177,10 +184,13 @@ public:
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
-        if (blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, meshes))
-            send(block_start, blocks.start), send(block_surface, blocks.surface);
+        const bool new_lists =
+            blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, *meshes);
         BoundaryBlockView near = blocks.view();
-        near.start = block_start.data(), near.surface = block_surface.data();
+        if constexpr (!is_cpu) {
+            if (new_lists) resting.send(*this, blocks.resting), moving.send(*this, blocks.moving);
+            resting.replace(near.resting), moving.replace(near.moving);
+        }
         neighbours.find({.domain = domain,
                          .law_of = one_law ? nullptr : law_of.data(),
                          .materials = materials,
@@ -196,11 +206,14 @@ public:
             free_pairs =
                 list_pairs(detail::HasFreeBoundary{own.pairs.j.data(), surfaces()}, with_free_boundary);
         triangle_pairs = 0;
-        if (triangle.size() > 0) triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
+        if (!meshes->triangle.empty())
+            triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
+        if constexpr (is_cpu)
+            triangle_contacts.list(pair_view(), surfaces(), with_triangle.data(), triangle_pairs);
         if (watched) prepare_watch();
     }
 
-    void find_loads(const Domain& domain, float h, bool store) override
+    void find_loads(const Domain& domain, float h, bool store, [[maybe_unused]] double path) override
     {
         host_is_current = false;
         if constexpr (is_cpu) {
@@ -215,15 +228,17 @@ public:
         PairView pairs = pair_view();
         if (watched) pairs.largest_overlap = overlaps.data();
         const ParticleView particles = particle_view(domain, own.particle);
-        if (triangle_pairs > 0)
-            par::for_each(
-                on, triangle_pairs,
-                HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
         if constexpr (is_cpu) {
-            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(),
-                              static_cast<std::uint32_t>(plan.list.size()));
+            // Those with triangles are the last ones of the list.
+            const auto others = static_cast<std::uint32_t>(plan.list.size()) - triangle_pairs;
+            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
+            triangle_contacts.find_loads(on, particles, pairs, law_view(h), own.pairs.start.data(), path);
             pending = {particles, pairs, law_view(h)};
         } else {
+            if (triangle_pairs > 0)
+                par::for_each(
+                    on, triangle_pairs,
+                    HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
             granular::find_loads(on, particles, pairs, law_view(h));
         }
     }
@@ -382,8 +397,9 @@ public:
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
                with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
-               block_start.bytes() + block_surface.bytes() + triangle.bytes() + vertex.bytes() +
-               vertex_normal.bytes() + fan_start.bytes() + fan.bytes() + with_triangle.bytes();
+               resting.bytes() + moving.bytes() + triangle.bytes() + vertex.bytes() + vertex_normal.bytes() +
+               fan_start.bytes() + fan.bytes() + with_triangle.bytes() + triangle_contacts.bytes() +
+               (is_cpu ? meshes->bytes() : 0);
     }
 
 private:
@@ -409,6 +425,7 @@ private:
 
     Surfaces surfaces() const
     {
+        if constexpr (is_cpu) return {boundaries.data(), meshes->view()};
         return {boundaries.data(),
                 {triangle.data(), vertex.data(), vertex_normal.data(), fan_start.data(), fan.data()}};
     }
@@ -544,12 +561,26 @@ private:
     par::Array<Backend, BoundaryPose> poses;
     std::vector<Boundary> last_boundaries;
     BoundaryBlocks blocks;  ///< of last_boundaries
-    par::Array<Backend, std::uint32_t> block_start, block_surface;
-    Meshes meshes;
+    /// Lists of `blocks` in the memory of a GPU
+    struct SurfaceArrays {
+        par::Array<Backend, std::uint32_t> start, surface;
+        void send(EngineOn& engine, const SurfaceLists& from)
+        {
+            engine.send(start, from.start), engine.send(surface, from.surface);
+        }
+        void replace(SurfaceListView& view) const
+        {
+            view.start = start.data(), view.surface = surface.data();
+        }
+        std::size_t bytes() const { return start.bytes() + surface.bytes(); }
+    } resting, moving;
+    std::shared_ptr<const Meshes> meshes = std::make_shared<Meshes>();
+    // the same in the memory of a GPU; see MeshView
     par::Array<Backend, MeshTriangle> triangle;
     par::Array<Backend, Vec3> vertex, vertex_normal;
-    par::Array<Backend, std::uint32_t> fan_start, fan;  ///< see MeshView
-    SweepPlan plan;                                     ///< of the CPU
+    par::Array<Backend, std::uint32_t> fan_start, fan;
+    SweepPlan plan;                      ///< of the CPU
+    TriangleContacts triangle_contacts;  ///< of the CPU
     /// Arguments of find_loads() for the pass in advance()
     struct Pending {
         ParticleView particles;

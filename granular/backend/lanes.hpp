@@ -169,6 +169,14 @@ inline void compress(T* to, const Word& words, unsigned bits)
     static_assert(sizeof(T) == 4);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), __m512i(words.v)));
 }
+/// The same for `lanes` numbers from `from` on
+inline void compress(double* to, const double* from, unsigned bits)
+{
+    const __m512d low = _mm512_loadu_pd(from), high = _mm512_loadu_pd(from + 8);
+    _mm512_storeu_pd(to, _mm512_maskz_compress_pd(static_cast<__mmask8>(bits), low));
+    _mm512_storeu_pd(to + __builtin_popcount(bits & 0xFF),
+                     _mm512_maskz_compress_pd(static_cast<__mmask8>(bits >> 8), high));
+}
 /// Writes first + k for each set bit k; returns their number. It may overwrite up to `lanes` elements of
 /// `to`.
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
@@ -205,6 +213,10 @@ template <class Word, class T>
 inline void compress(T* to, const Word& words, unsigned bits)
 {
     for (; bits != 0; bits &= bits - 1) *to++ = words.v[__builtin_ctz(bits)];
+}
+inline void compress(double* to, const double* from, unsigned bits)
+{
+    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
 }
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
 {

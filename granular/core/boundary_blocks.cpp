@@ -11,7 +11,8 @@ namespace hilda::granular {
 
 namespace {
 
-constexpr std::int64_t most_blocks = 1 << 15;
+// A block has a few triangles or more, so that the blocks need less memory than the triangles.
+constexpr std::int64_t least_blocks = 1 << 15, blocks_per_triangle = 1;
 
 bool same_cells(const CellGrid& a, const CellGrid& b)
 {
@@ -21,65 +22,70 @@ bool same_cells(const CellGrid& a, const CellGrid& b)
 
 }  // namespace
 
-/// Sets the number of blocks: cells if there are few, else as many cells per block as necessary.
-void BoundaryBlocks::make_blocks(const CellGrid& grid)
-{
-    of = grid;
-    for (shift = 0;; ++shift) {
-        std::int64_t all = 1;
-        for (std::size_t k = 0; k < 3; ++k) {
-            blocks[k] = (grid.cells[k] + (1 << shift) - 1) >> shift;
-            all *= blocks[k];
-        }
-        if (all <= most_blocks) return;
-    }
-}
-
 bool BoundaryBlocks::update(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries,
                             const Meshes& meshes)
 {
-    bool changed = surfaces.size() != boundaries.size();
-    if (reach != reach_of || !same_cells(grid, of)) {
-        make_blocks(grid);
-        reach_of = reach;
-        surfaces.clear();
-        changed = true;
+    const bool anew = surfaces.size() != boundaries.size() || reach != reach_of || !same_cells(grid, of);
+    if (surfaces.size() != boundaries.size()) moves.assign(boundaries.size(), false);
+    bool rests_changed = anew, moves_changed = anew;
+    for (std::size_t b = 0; b < surfaces.size() && b < boundaries.size(); ++b) {
+        if (surfaces[b] == surface_of(boundaries[b])) continue;
+        moves_changed = true;
+        if (!moves[b]) moves[b] = true, rests_changed = true;
     }
-    near.resize(boundaries.size());
-    for (std::size_t b = 0; b < boundaries.size(); ++b) {
-        const Surface now = surface_of(boundaries[b]);
-        if (b < surfaces.size() && surfaces[b] == now) continue;
-        near[b].clear();
-        if (boundaries[b].shape != Boundary::Shape::mesh)
-            search(boundaries[b], {{0, 0, 0}, blocks}, static_cast<std::uint32_t>(b), near[b]);
-        else if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(b)))
-            for (std::uint32_t t = part->first; t < part->end; ++t)
-                search_triangle(boundaries[b], meshes, t, near[b]);
-        changed = true;
-    }
-    if (!changed) return false;
+    if (!moves_changed) return false;
+    of = grid, reach_of = reach;
     surfaces.clear();
     for (const Boundary& b : boundaries) surfaces.push_back(surface_of(b));
-
-    const std::size_t count = static_cast<std::size_t>(blocks[0]) * blocks[1] * blocks[2];
-    start.assign(count + 1, 0);
-    for (const auto& of_boundary : near)
-        for (const Near& n : of_boundary) ++start[n.block + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    surface.resize(start.back());
-    std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
-    const auto put = [&](bool of_mesh) {
-        for (std::size_t b = 0; b < near.size(); ++b)
-            if ((boundaries[b].shape == Boundary::Shape::mesh) == of_mesh)
-                for (const Near& n : near[b]) surface[next[n.block]++] = n.surface;
-    };
-    put(false), put(true);  // in ascending order
+    std::vector<bool> rests = moves;
+    rests.flip();
+    if (rests_changed) resting.fill(grid, reach, boundaries, meshes, rests);
+    moving.fill(grid, reach, boundaries, meshes, moves);
     return true;
 }
 
+/// Sets the number of blocks: cells if there are few, else as many cells per block as necessary.
+void SurfaceLists::make_blocks(std::int64_t most)
+{
+    for (shift = 0;; ++shift) {
+        std::int64_t all = 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            blocks[k] = (of.cells[k] + (1 << shift) - 1) >> shift;
+            all *= blocks[k];
+        }
+        if (all <= most) return;
+    }
+}
+
+void SurfaceLists::fill(const CellGrid& grid, double reach, const std::vector<Boundary>& boundaries,
+                        const Meshes& meshes, const std::vector<bool>& which)
+{
+    of = grid, reach_of = reach;
+    std::int64_t triangles = 0;
+    for (const Meshes::Part& part : meshes.part)
+        if (which[part.boundary]) triangles += part.end - part.first;
+    const bool any = std::find(which.begin(), which.end(), true) != which.end();
+    make_blocks(any ? std::max(least_blocks, blocks_per_triangle * triangles) : 1);
+
+    std::vector<Near> found;  // in ascending order of the surfaces: those with triangles are the last ones
+    for (std::size_t b = 0; b < boundaries.size(); ++b)
+        if (which[b] && boundaries[b].shape != Boundary::Shape::mesh)
+            search(boundaries[b], {{0, 0, 0}, blocks}, static_cast<std::uint32_t>(b), found);
+    for (const Meshes::Part& part : meshes.part)
+        for (std::uint32_t t = part.first; which[part.boundary] && t < part.end; ++t)
+            search_triangle(boundaries[part.boundary], meshes, t, found);
+
+    start.assign(static_cast<std::size_t>(blocks[0]) * blocks[1] * blocks[2] + 1, 0);
+    for (const Near& n : found) ++start[n.block];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    surface.resize(start.back());
+    // from the last one on, so that the ends of the blocks become their starts
+    for (auto n = found.rbegin(); n != found.rend(); ++n) surface[--start[n->block]] = n->surface;
+}
+
 /// Adds the blocks that are near the triangle t of a mesh.
-void BoundaryBlocks::search_triangle(const Boundary& b, const Meshes& meshes, std::uint32_t t,
-                                     std::vector<Near>& found) const
+void SurfaceLists::search_triangle(const Boundary& b, const Meshes& meshes, std::uint32_t t,
+                                   std::vector<Near>& found) const
 {
     const MeshTriangle& T = meshes.triangle[t];
     BoundingBox box;
@@ -111,8 +117,8 @@ void BoundaryBlocks::search_triangle(const Boundary& b, const Meshes& meshes, st
 }
 
 /// Adds the blocks of a box that are near the boundary.
-void BoundaryBlocks::search(const Boundary& b, const Box& box, std::uint32_t number,
-                            std::vector<Near>& found) const
+void SurfaceLists::search(const Boundary& b, const Box& box, std::uint32_t number,
+                          std::vector<Near>& found) const
 {
     // A hundredth of a cell on each side allows for rounding.
     Vec3 centre{0, 0, 0};
@@ -139,13 +145,6 @@ void BoundaryBlocks::search(const Boundary& b, const Box& box, std::uint32_t num
     part = box;
     part.first[longest] = first + (last - first) / 2;
     search(b, part, number, found);
-}
-
-std::size_t BoundaryBlocks::bytes() const
-{
-    std::size_t words = start.capacity() + surface.capacity();
-    for (const auto& of_boundary : near) words += 2 * of_boundary.capacity();
-    return words * sizeof(std::uint32_t) + surfaces.capacity() * sizeof(Surface);
 }
 
 }  // namespace hilda::granular

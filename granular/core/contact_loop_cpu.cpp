@@ -146,25 +146,6 @@ struct ContactLoop : detail::ContactPacks {
         }
     }
 
-    /// Positions of particles in the global frame [m]
-    struct Points {
-        alignas(64) double x[lanes], y[lanes], z[lanes];
-    };
-    Points points(const std::uint32_t* i) const
-    {
-        const CellGrid& g = particles.grid;
-        const auto p = detail::gather_rows<Ints>(particles.position, i);
-        alignas(64) std::int32_t cell[lanes], x[lanes], y[lanes], z[lanes];
-        std::memcpy(cell, &p.x, sizeof cell), std::memcpy(x, &p.y, sizeof x);
-        std::memcpy(y, &p.z, sizeof y), std::memcpy(z, &p.w, sizeof z);
-        Points out;
-        for (int k = 0; k < lanes; ++k) {
-            const Vec3 r = global_position(g, {static_cast<std::uint32_t>(cell[k]), x[k], y[k], z[k]});
-            out.x[k] = r.x, out.y[k] = r.y, out.z[k] = r.z;
-        }
-        return out;
-    }
-
     /// Contacts with a plane: geometry in double precision, as in find_boundary_contact(), and force law per
     /// pack
     void evaluate_plane(const PairLaw& law, const Boundary& b, const std::uint32_t* which,
@@ -216,29 +197,8 @@ struct ContactLoop : detail::ContactPacks {
             relative.x.v[k] = static_cast<float>(u.x), relative.y.v[k] = static_cast<float>(u.y),
             relative.z.v[k] = static_cast<float>(u.z);
         }
-        const auto narrow = [](const Vec3& a) {
-            return Vec<Pack>{Pack(static_cast<float>(a.x)), Pack(static_cast<float>(a.y)),
-                             Pack(static_cast<float>(a.z))};
-        };
-        contact.h = laws.h, contact.n = narrow(b.axis);
-        contact.R_i = contact.R_eff = v.w, contact.R_j = Pack(0.f);
-        contact.m_eff = Pack(1.f) / (w.w + Pack(b.inverse_mass()));
-        const Vec<Pack> omega_i{w.x, w.y, w.z}, omega_j = narrow(b.omega);
-        set_rates(contact, relative, omega_i, omega_j);
-        if (law.lever == Lever::contact) move_to_contact_point(contact, omega_i, omega_j);
-        overlaps = larger(overlaps, contact.delta / contact.R_i);
-        store_loads(evaluate_pack(law, contact, n), n);
-    }
-
-    /// Requests the triangle of a pair.
-    void prefetch(std::uint32_t n) const
-    {
-        const std::uint32_t k = pairs.j[n] & ~PairView::boundary_bit;
-        if (!Surfaces::is_triangle(k)) return;
-        const auto* const triangle =
-            reinterpret_cast<const char*>(laws.surfaces.mesh.triangle + (k - Surfaces::first_triangle));
-        for (std::size_t byte = 0; byte < sizeof(MeshTriangle); byte += 64)
-            __builtin_prefetch(triangle + byte);
+        contact.n = splat(b.axis);
+        evaluate_on_boundary(law, b, contact, v.w, w, relative, n, overlaps);
     }
 
     /// Contacts with surfaces of any shape: the geometry is computed per pair in double precision, the force
@@ -267,9 +227,7 @@ struct ContactLoop : detail::ContactPacks {
             store_loads(evaluate_pack(law, contact, touching), touching);
             touching_count = 0;
         };
-        constexpr std::uint32_t ahead = 6;  // pairs
         for (std::uint32_t m = 0; m < number; ++m) {
-            if (m + ahead < number) prefetch(which[m + ahead]);
             const std::uint32_t at = which[m], i = pairs.i[at];
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],

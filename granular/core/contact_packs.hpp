@@ -137,6 +137,46 @@ struct ContactPacks {
         return evaluate_pack(law, contact_point(law, overlap, i, j, overlaps), n);
     }
 
+    /// Positions of particles in the global frame [m]
+    struct Points {
+        alignas(64) double x[lanes], y[lanes], z[lanes];
+    };
+    Points points(const std::uint32_t* i) const
+    {
+        const CellGrid& g = particles.grid;
+        const auto p = detail::gather_rows<Ints>(particles.position, i);
+        alignas(64) std::int32_t cell[lanes], x[lanes], y[lanes], z[lanes];
+        std::memcpy(cell, &p.x, sizeof cell), std::memcpy(x, &p.y, sizeof x);
+        std::memcpy(y, &p.z, sizeof y), std::memcpy(z, &p.w, sizeof z);
+        Points out;
+        for (int k = 0; k < lanes; ++k) {
+            const Vec3 r = global_position(g, {static_cast<std::uint32_t>(cell[k]), x[k], y[k], z[k]});
+            out.x[k] = r.x, out.y[k] = r.y, out.z[k] = r.z;
+        }
+        return out;
+    }
+
+    /// The same vector in all lanes
+    static Vec<Pack> splat(const Vec3& a)
+    {
+        return {Pack(static_cast<float>(a.x)), Pack(static_cast<float>(a.y)), Pack(static_cast<float>(a.z))};
+    }
+    /// The loads of a pack of contacts n with a flat boundary. `contact` has the overlaps and normals;
+    /// `relative` are the velocities of the centres relative to the closest points [m/s].
+    void evaluate_on_boundary(const PairLaw& law, const Boundary& b, ContactPoint<Pack>& contact, Pack R,
+                              const Words4<Pack>& w, const Vec<Pack>& relative, const std::uint32_t* n,
+                              Pack& overlaps) const
+    {
+        contact.h = laws.h;
+        contact.R_i = contact.R_eff = R, contact.R_j = Pack(0.f);
+        contact.m_eff = Pack(1.f) / (w.w + Pack(b.inverse_mass()));
+        const Vec<Pack> omega_i{w.x, w.y, w.z}, omega_j = splat(b.omega);
+        set_rates(contact, relative, omega_i, omega_j);
+        if (law.lever == Lever::contact) move_to_contact_point(contact, omega_i, omega_j);
+        overlaps = larger(overlaps, contact.delta / contact.R_i);
+        store_loads(evaluate_pack(law, contact, n), n);
+    }
+
     /// Evaluates the force law and advances the histories of the pairs n. Several lanes may hold the same
     /// pair; they then store the same values.
     [[gnu::flatten]] PackLoad evaluate_pack(const PairLaw& law, const ContactPoint<Pack>& contact,

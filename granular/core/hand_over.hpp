@@ -36,8 +36,13 @@ struct HandOver {
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
-        const std::uint32_t begin = which[k], i = pairs.i[begin], end = start[i + 1];
-        if (begin > start[i] && HasTriangle{pairs.j}(begin - 1)) return;
+        const std::uint32_t begin = which[k];
+        if (begin == start[pairs.i[begin]] || !HasTriangle{pairs.j}(begin - 1)) within_row(begin);
+    }
+    /// Hands over among the triangles of a particle; `begin` is its first pair with a triangle.
+    HILDA_HD void within_row(std::uint32_t begin) const
+    {
+        const std::uint32_t i = pairs.i[begin], end = start[i + 1];
         std::uint32_t contacts = 0;
         for (std::uint32_t n = begin; n < end; ++n) contacts += pairs.in_contact[n] != 0 ? 1 : 0;
         if (contacts == 0 || contacts == end - begin) return;

@@ -104,12 +104,16 @@ private:
     bool load()
     {
         return files.load([&](const std::string& bytes, const std::string& from) {
-            c.world->from_bytes(bytes, id, from, [&](io::Archive& a) {
-                io::Sinks<CaseSetup>::Saved saved_sinks;
-                a.map(saved_sinks);
-                transfer_insertions(a);
-                sinks.open(saved_sinks, from);
-            });
+            try {
+                c.world->from_bytes(bytes, id, from, [&](io::Archive& a) {
+                    io::Sinks<CaseSetup>::Saved saved_sinks;
+                    a.map(saved_sinks);
+                    transfer_insertions(a);
+                    sinks.open(saved_sinks, from);
+                });
+            } catch (const MeshChanged& e) {
+                throw MeshChanged(from, e.boundary, '\'' + c.boundaries[e.boundary] + '\'');
+            }
             const long most = std::max(earlier.end, steps);
             if (c.world->steps() > most)
                 throw io::IoError(

@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 13};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 14};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>
@@ -137,13 +137,15 @@ bool same_boundary(const Boundary& now, Boundary saved)
     return std::memcmp(&now, &saved, sizeof saved) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
 }
 
-std::uint64_t checksum(const Meshes& meshes)
+/// Of the triangles of a mesh and their vertices
+std::uint64_t checksum(const Meshes& meshes, const Meshes::Part& part)
 {
     std::uint64_t sum = 0;
-    const auto add = [&](const auto& list) {
-        sum = io::checksum(sum, reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
+    const auto add = [&](const auto& list, std::uint32_t first, std::uint32_t end) {
+        sum = io::checksum(sum, reinterpret_cast<const char*>(list.data() + first),
+                           (end - first) * sizeof list[0]);
     };
-    add(meshes.vertex), add(meshes.triangle);
+    add(meshes.vertex, part.first_vertex, part.end_vertex), add(meshes.triangle, part.first, part.end);
     return sum;
 }
 
@@ -285,10 +287,16 @@ void World::transfer(io::Archive& a)
     a.list(removed_particles);
     a.check_each(removed_particles, "invalid record of a removed particle", valid_removed,
                  [](const RemovedParticle& p) { return shown(p); });
-    std::uint64_t of_meshes = checksum(meshes);
-    a.value(of_meshes);
-    a.check(of_meshes == checksum(meshes),
-            "other meshes than in this world, got the checksum " + std::to_string(of_meshes));
+    std::vector<std::uint64_t> sums;  // of the meshes
+    for (const Meshes::Part& part : meshes->part) sums.push_back(checksum(*meshes, part));
+    const std::vector<std::uint64_t> sums_now = sums;
+    a.list(sums);
+    a.check(sums.size() == sums_now.size(), "wrong number of meshes, it must be " +
+                                                std::to_string(sums_now.size()) + ", got " +
+                                                std::to_string(sums.size()));
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        if (const std::uint32_t b = meshes->part[k].boundary; sums[k] != sums_now[k])
+            throw MeshChanged(a.name(), b, "of boundary " + std::to_string(b));
     std::vector<Boundary> now = boundaries;
     a.list(boundaries);
     a.check(now.size() == boundaries.size(),
@@ -349,7 +357,7 @@ void World::transfer(io::Archive& a)
             a.check(false, "invalid position of " + name_of(p.id.data()[k]) + ", got " +
                                shown(Vec3{double(place.x), double(place.y), double(place.z)}));
     }
-    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size(), meshes.triangle.size());
+    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size(), meshes->triangle.size());
     if (has_list)
         restore_neighbours(a.name(), std::move(at_build));
     else

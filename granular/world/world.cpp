@@ -112,11 +112,13 @@ int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
     check_mesh(mesh, name);
     if (b.shape != Boundary::Shape::mesh)
         refuse(name, "the shape of a boundary with triangles must be a mesh", static_cast<int>(b.shape));
-    if (meshes.triangle.size() + mesh.triangle.size() > TriangleMesh::most_triangles)
-        refuse(name, "all meshes must not have more than 2^22 triangles",
-               meshes.triangle.size() + mesh.triangle.size());
+    const std::size_t triangles = meshes->triangle.size() + mesh.triangle.size();
+    if (triangles > TriangleMesh::most_triangles)
+        refuse(name, "all meshes must not have more than 2^22 triangles", triangles);
     const int number = add_boundary(b);
-    meshes.add(mesh, static_cast<std::uint32_t>(number), two_sided);
+    // The engine may share them.
+    if (meshes.use_count() > 1) meshes = std::make_shared<Meshes>(*meshes);
+    meshes->add(mesh, static_cast<std::uint32_t>(number), two_sided);
     meshes_changed = true;
     return number;
 }
@@ -224,7 +226,7 @@ void World::find_neighbours() const
                "radii; particles",
                count());
     }
-    particle_displacement = boundary_displacement = 0;
+    particle_displacement = boundary_displacement = path = 0;
     boundaries_at_build.clear();
     for (const Boundary& b : boundaries) boundaries_at_build.emplace_back(b);
     ++rebuild_count;
@@ -284,7 +286,7 @@ void World::one_step()
         if (verlet) send_boundaries();  // they have moved in this step
         take(times.neighbours);
         in_step = true;
-        engine->find_loads(domain, h, store);
+        engine->find_loads(domain, h, store, path);
         take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
@@ -307,7 +309,13 @@ void World::one_step()
         const float before = std::exchange(max_speed, std::sqrt(engine->advance(step_parameters(part))));
         const double displacement = options.h * static_cast<double>(par::nan_max(before, max_speed));
         check_displacement(displacement);
+        // The displacement of `chung` may exceed h times the speeds at both ends of the step.
+        path += options.scheme == Scheme::chung ? 2 * displacement : displacement;
         return displacement;
+    };
+    const auto move = [&] {
+        const double displacement = move_boundaries();
+        boundary_displacement += displacement, path += displacement;
     };
     send_boundaries();
     if (!is_posed()) move_attached();
@@ -319,7 +327,7 @@ void World::one_step()
     if (verlet) {
         accelerate_tools(0.5);
         particle_displacement += advance(Part::before_loads);
-        boundary_displacement += move_boundaries();
+        move();
         if (!is_posed()) move_attached();
         find_loads(false);
         find_tool_loads();
@@ -334,7 +342,7 @@ void World::one_step()
         watch_loads();
         particle_displacement += advance(Part::whole);
         watch_advance();
-        boundary_displacement += move_boundaries();
+        move();
         if (!is_posed()) move_attached();
     }
     boundaries_changed = false;

@@ -30,6 +30,18 @@ namespace hilda::granular {
 
 inline bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+/// A checkpoint is of a world in which this boundary had other triangles.
+class MeshChanged : public io::IoError {
+public:
+    /// `file`: the checkpoint; `name`: of the boundary in the message
+    MeshChanged(const std::string& file, std::size_t boundary, const std::string& name)
+        : io::IoError(file + ": the triangles of the mesh " + name +
+                      " have changed since the checkpoint was written"),
+          boundary(boundary)
+    {}
+    std::size_t boundary;
+};
+
 /// A particle has left the domain, has moved by more than a cell in one step, or has a velocity that is not
 /// finite. Do not continue the run: the step may be computed in part only.
 class ParticleLost : public io::NumericalFailure {
@@ -219,7 +231,7 @@ public:
     /// contact loads along its free axes. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     const std::vector<Boundary>& all_boundaries() const { return boundaries; }
-    const Meshes& all_meshes() const { return meshes; }
+    const Meshes& all_meshes() const { return *meshes; }
     /// Lower and upper corner of the domain [m]
     const Vec3& low() const { return options.low; }
     const Vec3& high() const { return options.high; }
@@ -384,7 +396,7 @@ private:
     bool boundaries_move();
     int add_boundary(const Boundary& boundary);
     void send_boundaries() const;
-    Surfaces surfaces() const { return {boundaries.data(), meshes.view()}; }
+    Surfaces surfaces() const { return {boundaries.data(), meshes->view()}; }
     bool is_sample() const;
     void watch_loads();
     void watch_advance();
@@ -400,7 +412,7 @@ private:
     std::vector<PairLaw> laws;
     std::vector<std::uint8_t> law_of;  ///< index into laws, or no_law: materials × materials
     std::vector<Boundary> boundaries;
-    Meshes meshes;                   ///< of the boundaries with Shape::mesh
+    std::shared_ptr<Meshes> meshes = std::make_shared<Meshes>();  ///< of the boundaries with Shape::mesh
     std::vector<Wrench> tool_loads;  ///< contact loads on the boundaries with a mass, at t_n
     std::vector<Float4> forces;      ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;   ///< particles added since the last insertion
@@ -428,6 +440,8 @@ private:
     /// Upper bounds of the displacements of particles and of boundaries since the neighbour list was built
     /// [m]; infinite if the list must be rebuilt. The list is a cache, therefore these members are mutable.
     mutable double particle_displacement = std::numeric_limits<double>::infinity(), boundary_displacement = 0;
+    /// Upper bound of the path of any particle relative to any boundary since the list was built [m]
+    mutable double path = 0;
     struct BoundaryPlace {
         Vec3 r, axis;
         EulerParameters<double> p;

@@ -64,6 +64,7 @@ double World::move_boundaries()
     double largest = 0;
     moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
     for (std::size_t k = 0; k < boundaries.size(); ++k) moved[k] = {boundaries[k].v, mean_omega_of(k)};
+    auto part = meshes->part.begin();
     rotate_frames();
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
@@ -74,9 +75,11 @@ double World::move_boundaries()
         const double angle = h * omega.norm();
         if (b.shape == Boundary::Shape::mesh || b.mass > 0) rotate(b, omega, h);
         if (b.shape == Boundary::Shape::mesh) {
-            if (const Meshes::Part* const part = meshes.part_of(static_cast<std::uint32_t>(k)))
+            if (part != meshes->part.end() && part->boundary == k) {
                 // also of the centres of particles in contact
                 displacement += angle * (part->radius + double{domain.largest} + domain.skin);
+                ++part;
+            }
         } else if (b.shape != Boundary::Shape::sphere && omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * omega;
             const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +

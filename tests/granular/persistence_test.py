@@ -105,6 +105,16 @@ def ends(runs):
     expect("cut/checkpoint: the checkpoint is damaged" in runs.finish(case, "--output", "cut", "--resume", code=5),
            "damaged checkpoints are rejected")
 
+    # another mesh file
+    plate = "v 0 0 0.041\nv 0.02 0 0.041\nv 0.01 {} 0.041\nf 1 3 2\n"
+    (runs.folder / "plate.obj").write_text(plate.format(0.02))
+    meshed = runs.case("meshed", end=0.002,
+                       boundaries=CASE["boundaries"] + [{"name": "roof", "type": "mesh", "file": "plate.obj", "material": "steel"}])
+    runs.finish(meshed, "--output", "meshed")
+    (runs.folder / "plate.obj").write_text(plate.format(0.019))
+    err = runs.finish(meshed, "--output", "meshed", "--resume", "--end", "0.003", code=5)
+    expect("meshed/checkpoint.end: the triangles of the mesh 'roof' have changed since the checkpoint was written" in err, err)
+
     # a signal stops the run immediately, and the run continues from there
     rare = runs.case("rare", end=0.08, interval=0.01, frame_interval=0.01)
     begin = time.monotonic()

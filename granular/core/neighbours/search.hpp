@@ -110,12 +110,10 @@ struct Search {
             search_half(k, f);
         if (omega[k].w == 0) return;
         const Position at = position[k];
-        const std::uint32_t block = near.block(grid.x_of(at.cell), grid.y_of(at.cell), grid.z_of(at.cell));
-        for (std::uint32_t n = near.start[block]; n < near.start[block + 1]; ++n) {
-            const std::uint32_t surface = near.surface[n];
-            if (surfaces.is_near(surface, global_position(grid, at), velocity[k].w, skin))
-                f(PairView::boundary_bit | surface);
-        }
+        const Vec3 r = global_position(grid, at);
+        near.each(grid.x_of(at.cell), grid.y_of(at.cell), grid.z_of(at.cell), [&](std::uint32_t surface) {
+            if (surfaces.is_near(surface, r, velocity[k].w, skin)) f(PairView::boundary_bit | surface);
+        });
     }
 
     template <class F>

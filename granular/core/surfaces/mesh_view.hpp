@@ -143,36 +143,84 @@ HILDA_HD inline Nearest nearest(const MeshView& mesh, std::uint32_t t, const Vec
     return none;
 }
 
-/// Whether the triangle t may own a local minimum for a point that is closer than `slack` [m] to p: the
-/// conditions of nearest(), each relaxed by the slack
-HILDA_HD inline bool may_own(const MeshView& mesh, std::uint32_t t, const Vec3& p, double slack)
+namespace detail {
+
+/// Lower bound of the distance from p to the planes that bisect the smooth edges of the triangle t which are
+/// concave on the front, or on the back for sign = -1 [m]: negative if p is beyond one of these planes,
+/// closer to the plane of the neighbour
+HILDA_HD inline double distance_to_bisector(const MeshView& mesh, std::uint32_t t, const Vec3& p, double sign)
 {
     const MeshTriangle& T = mesh.triangle[t];
-    const double outside[3] = {T.edge[0].height(p), T.edge[1].height(p), T.edge[2].height(p)};
-    if (outside[0] < slack && outside[1] < slack && outside[2] < slack)
-        if ((T.flags & MeshTriangle::two_sided) != 0 || T.face.height(p) > -slack) return true;
+    const std::uint32_t concave = sign < 0 ? MeshTriangle::smooth_convex : MeshTriangle::smooth_concave;
+    double least = no_contact_distance;
     for (int k = 0; k < 3; ++k) {
-        if (outside[k] < -slack || (T.flags & MeshTriangle::owns_edge << k) == 0) continue;
+        if ((T.flags & concave << k) == 0) continue;
+        const MeshPlane& other = mesh.triangle[T.across[k]].face;
+        // between triangles that are almost coplanar, heights over the angle would show rounding errors
+        const double angle = (other.n - T.face.n).norm(), least_angle = 1e-3;
+        const double distance =
+            sign * (other.height(p) - T.face.height(p)) / (angle > least_angle ? angle : least_angle);
+        if (distance < least) least = distance;
+    }
+    return least;
+}
+
+}  // namespace detail
+
+/// Distance by which a point may move from p in any direction while the triangle t keeps a local minimum in
+/// its inside, on the same side [m]; not positive if it has none there now
+HILDA_HD inline double distance_in_face(const MeshView& mesh, std::uint32_t t, const Vec3& p)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const double height = T.face.height(p);
+    double least = (T.flags & MeshTriangle::two_sided) != 0 && height < 0 ? -height : height;
+    for (int k = 0; k < 3; ++k) {
+        const double inside = -T.edge[k].height(p);
+        if (inside < least) least = inside;
+    }
+    if (!(least > 0)) return least;
+    const double to_bisector = detail::distance_to_bisector(mesh, t, p, height < 0 ? -1 : 1);
+    return to_bisector < least ? to_bisector : least;
+}
+
+/// Distance by which a point must move from p at least before the triangle t can own a local minimum [m]: the
+/// largest violation of the conditions of nearest(), for the feature with the smallest one. Not positive if
+/// it may own one now.
+HILDA_HD inline double distance_to_ownership(const MeshView& mesh, std::uint32_t t, const Vec3& p)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const auto raise = [](double& to, double x) {
+        if (x > to) to = x;
+    };
+    const double outside[3] = {T.edge[0].height(p), T.edge[1].height(p), T.edge[2].height(p)};
+    double least = outside[0];
+    raise(least, outside[1]), raise(least, outside[2]);
+    if ((T.flags & MeshTriangle::two_sided) == 0)
+        raise(least, -T.face.height(p)), raise(least, -detail::distance_to_bisector(mesh, t, p, 1));
+    for (int k = 0; k < 3; ++k) {
+        if (-outside[k] >= least || (T.flags & MeshTriangle::owns_edge << k) == 0) continue;
         const std::uint32_t u = T.vertex[k], v = T.vertex[k == 2 ? 0 : k + 1];
-        const Vec3 a = mesh.vertex[u], b = mesh.vertex[v], e = b - a;
-        const double margin = slack * e.norm();
-        if (!((p - a).dot(e) > -margin && (p - b).dot(a - b) > -margin)) continue;
-        if (T.across[k] == no_triangle) return true;
-        const MeshTriangle& other = mesh.triangle[T.across[k]];
-        if (other.edge[detail::edge_from(other, v)].height(p) >= -slack) return true;
+        const Vec3 a = mesh.vertex[u], b = mesh.vertex[v], e = (1 / (b - a).norm()) * (b - a);
+        double violation = -outside[k];
+        raise(violation, (a - p).dot(e)), raise(violation, (p - b).dot(e));
+        if (T.across[k] != no_triangle) {
+            const MeshTriangle& other = mesh.triangle[T.across[k]];
+            raise(violation, -other.edge[detail::edge_from(other, v)].height(p));
+        }
+        if (violation < least) least = violation;
     }
     for (int k = 0; k < 3; ++k) {
         if ((T.flags & MeshTriangle::owns_vertex << k) == 0) continue;
         const std::uint32_t v = T.vertex[k];
         const Vec3 at = mesh.vertex[v], d = p - at;
-        bool may_be_closest = true;
-        for (std::uint32_t m = mesh.fan_start[v]; may_be_closest && m < mesh.fan_start[v + 1]; ++m) {
+        double violation = -no_contact_distance;
+        for (std::uint32_t m = mesh.fan_start[v]; violation < least && m < mesh.fan_start[v + 1]; ++m) {
             const Vec3 e = mesh.vertex[mesh.fan[m]] - at;
-            may_be_closest = d.dot(e) <= slack * e.norm();
+            raise(violation, d.dot(e) / e.norm());
         }
-        if (may_be_closest) return true;
+        if (violation < least) least = violation;
     }
-    return false;
+    return least;
 }
 
 /// The point of the triangle t that is closest to p, in the frame of the mesh.     Ericson (2005), Sec. 5.1.5

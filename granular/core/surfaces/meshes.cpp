@@ -25,6 +25,8 @@ void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_side
     double radius = 0;
     for (const Vec3& v : mesh.vertex) radius = std::max(radius, v.norm());
     part.push_back({boundary, first, first + triangles, first_vertex, first_vertex + vertices, radius});
+    vertex.reserve(first_vertex + std::size_t{vertices}), triangle.reserve(first + std::size_t{triangles});
+    vertex_normal.reserve(vertex.capacity()), fan_start.reserve(vertex.capacity() + 1);
     vertex.insert(vertex.end(), mesh.vertex.begin(), mesh.vertex.end());
     vertex_normal.resize(vertex.size(), Vec3{0, 0, 0});
 
@@ -102,6 +104,12 @@ void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_side
         fan[next[edges[k].low]++] = first_vertex + edges[k].high;
         fan[next[edges[k].high]++] = first_vertex + edges[k].low;
     });
+}
+
+std::size_t Meshes::bytes() const
+{
+    const auto of = [](const auto&... lists) { return (... + (lists.capacity() * sizeof lists[0])); };
+    return of(triangle, vertex, vertex_normal, fan_start, fan, part);
 }
 
 }  // namespace hilda::granular

@@ -27,6 +27,7 @@ struct Meshes {
     /// find a fault.
     void add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_sided);
 
+    std::size_t bytes() const;
     MeshView view() const
     {
         return {triangle.data(), vertex.data(), vertex_normal.data(), fan_start.data(), fan.data()};

@@ -49,10 +49,12 @@ struct Surfaces {
         const std::uint32_t t = k - first_triangle;
         const Boundary& b = boundary[mesh.triangle[t].boundary];
         const Vec3 p = rotated_back(b.p, point - b.r);
-        const double height = mesh.triangle[t].face.height(p);
-        return height < radius + skin && -height < radius + skin &&
-               (p - granular::closest_point(mesh, t, p)).norm() < radius + skin &&
-               may_own(mesh, t, p, 1.01 * skin);
+        const MeshTriangle& T = mesh.triangle[t];
+        const double height = T.face.height(p), reach = radius + skin;
+        return height < reach && -height < reach && T.edge[0].height(p) < reach &&
+               T.edge[1].height(p) < reach && T.edge[2].height(p) < reach &&
+               (p - granular::closest_point(mesh, t, p)).norm() < reach &&
+               distance_to_ownership(mesh, t, p) < 1.01 * skin;
     }
     /// Lever arm of a contact load about Boundary::r [m]: from there to the point of the surface that is
     /// closest to the centre of the particle, or to the one at `depth` below it [m]

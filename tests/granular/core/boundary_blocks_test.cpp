@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 
 using namespace hilda;
 using namespace hilda::tests;
@@ -39,22 +40,29 @@ CellGrid grid(std::int32_t cells)
     return g;
 }
 
-bool lists(const BoundaryBlockView& view, std::uint32_t block, std::uint32_t boundary)
+/// The surfaces near a cell
+std::vector<std::uint32_t> listed_at(const BoundaryBlockView& view, const std::array<std::int32_t, 3>& cell)
 {
-    return std::binary_search(view.surface + view.start[block], view.surface + view.start[block + 1],
-                              boundary);
+    std::vector<std::uint32_t> all;
+    view.each(cell[0], cell[1], cell[2], [&](std::uint32_t surface) { all.push_back(surface); });
+    return all;
 }
 
-/// A random point in a random cell, and the block of the cell
-std::pair<Vec3, std::uint32_t> random_place(granular::Random& random, const CellGrid& g, double width,
-                                            const BoundaryBlockView& view)
+bool contains(const std::vector<std::uint32_t>& ascending, std::uint32_t surface)
 {
-    std::int32_t at[3];
-    for (int k = 0; k < 3; ++k)
+    return std::binary_search(ascending.begin(), ascending.end(), surface);
+}
+
+/// A random point in a random cell, and the surfaces near the cell
+std::pair<Vec3, std::vector<std::uint32_t>> random_place(granular::Random& random, const CellGrid& g,
+                                                         double width, const BoundaryBlockView& view)
+{
+    std::array<std::int32_t, 3> at;
+    for (std::size_t k = 0; k < 3; ++k)
         at[k] = std::min(static_cast<std::int32_t>(random.number(0, g.cells[k])), g.cells[k] - 1);
-    const auto inside = [&](int k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
+    const auto inside = [&](std::size_t k) { return g.low[k] + (at[k] + random.number(0, 1)) * width; };
     const Vec3 point{inside(0), inside(1), inside(2)};
-    return {point, view.block(at[0], at[1], at[2])};
+    return {point, listed_at(view, at)};
 }
 
 }  // namespace
@@ -75,13 +83,13 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
     const BoundaryBlockView view = blocks.view();
     long missing = 0, listed = 0, far = 0;
     for (int n = 0; n < 4000; ++n) {
-        const auto [point, block] = random_place(random, g, width, view);
+        const auto [point, near_cell] = random_place(random, g, width, view);
         for (std::uint32_t b = 0; b < all.size(); ++b) {
             const double distance = nearest(all[b], point).distance;
-            const bool is_listed = lists(view, block, b);
+            const bool is_listed = contains(near_cell, b);
             listed += is_listed;
             missing += distance < reach && !is_listed;
-            far += is_listed && distance > reach + std::sqrt(3.) * 1.1 * width * (1 << view.shift);
+            far += is_listed && distance > reach + std::sqrt(3.) * 1.1 * width * (1 << view.resting.shift);
         }
     }
     CHECK(missing == 0);
@@ -112,11 +120,11 @@ TEST_CASE("the blocks of cells list all triangles within reach and few others", 
     const auto triangles = static_cast<std::uint32_t>(meshes.triangle.size());
     long missing = 0, listed = 0, far = 0, near = 0;
     for (int n = 0; n < 3000; ++n) {
-        const auto [point, block] = random_place(random, g, width, view);
+        const auto [point, near_cell] = random_place(random, g, width, view);
         for (std::uint32_t t = 0; t < triangles; ++t) {
             const std::uint32_t surface = granular::Surfaces::first_triangle + t;
             const double distance = (point - surfaces.closest_point(surface, point)).norm();
-            const bool is_listed = lists(view, block, surface);
+            const bool is_listed = contains(near_cell, surface);
             listed += is_listed, near += distance < reach;
             missing += distance < reach && !is_listed;
             far += is_listed && distance > 3 * (reach + 1.1 * width);
@@ -128,22 +136,54 @@ TEST_CASE("the blocks of cells list all triangles within reach and few others", 
 }
 
 TEST_CASE("the blocks of cells follow boundaries that move, are added, and another grid",
-          "[granular][neighbours]")
+          "[granular][neighbours][mesh]")
 {
     granular::Random random(9);
-    const auto same = [](const BoundaryBlocks& a, const BoundaryBlocks& b) {
-        return a.start == b.start && a.surface == b.surface;
-    };
-    std::vector<Boundary> all(3);
+    granular::Meshes meshes;
+    meshes.add(granular::sphere_mesh(0.4, 1), 0, false);
+    meshes.add(granular::plate_mesh(1, 1, 0.25), 1, false);
+    std::vector<Boundary> all(5);
+    all[0].shape = all[1].shape = Boundary::Shape::mesh;
     BoundaryBlocks kept;
-    for (int round = 0; round < 12; ++round) {
-        all[static_cast<std::size_t>(round % 3)] = random_boundary(random, Boundary::Shape::sphere);
+    for (int round = 0; round < 20; ++round) {
+        Boundary& b = all[static_cast<std::size_t>(round % 4)];  // the last one rests
+        const Boundary moved = random_boundary(random, Boundary::Shape::sphere);
+        if (b.shape == Boundary::Shape::mesh)
+            b.r = moved.r;
+        else
+            b = moved;
         if (round % 4 == 3) all.push_back(random_boundary(random, Boundary::Shape::plane));
         if (round == 10) all.pop_back();
         const CellGrid g = grid(round < 8 ? 6 : 11);
-        CHECK(kept.update(g, 0.1, all, {}));
+        CHECK(kept.update(g, 0.1, all, meshes));
+        CHECK_FALSE(kept.update(g, 0.1, all, meshes));
         BoundaryBlocks fresh;
-        fresh.update(g, 0.1, all, {});
-        CHECK(same(kept, fresh));
+        fresh.update(g, 0.1, all, meshes);
+        for (std::int32_t k = 0; k < g.cells[0] * g.cells[1] * g.cells[2]; ++k) {
+            const std::array cell{k % g.cells[0], k / g.cells[0] % g.cells[1], k / g.cells[0] / g.cells[1]};
+            REQUIRE(listed_at(kept.view(), cell) == listed_at(fresh.view(), cell));
+        }
+    }
+}
+
+TEST_CASE("a boundary that moves does not touch the lists of those at rest", "[granular][neighbours]")
+{
+    granular::Meshes meshes;
+    meshes.add(granular::plate_mesh(1, 1, 0.1), 0, false);
+    std::vector<Boundary> all(2);
+    all[0].shape = Boundary::Shape::mesh, all[0].r = {0.5, 0.5, 0.5};
+    BoundaryBlocks blocks;
+    const CellGrid g = grid(20);
+    REQUIRE(blocks.update(g, 0.02, all, meshes));
+    CHECK(blocks.moving.surface.empty());
+    for (int k = 0; k < 3; ++k) {
+        all[1].r.z += 0.05;
+        const std::uint32_t* const lists = blocks.resting.surface.data();
+        const std::size_t before = blocks.resting.surface.size();
+        REQUIRE(blocks.update(g, 0.02, all, meshes));
+        CHECK(!blocks.moving.surface.empty());
+        if (k == 0) continue;  // the plane leaves the lists
+        CHECK(blocks.resting.surface.data() == lists);
+        CHECK(blocks.resting.surface.size() == before);
     }
 }

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 
 using namespace hilda;
 using namespace hilda::tests;
@@ -204,7 +205,7 @@ TEST_CASE("inside of a sphere of triangles a grain has one contact, with the clo
     }
 }
 
-TEST_CASE("a triangle may own a minimum wherever it owns one within the slack", "[granular][mesh]")
+TEST_CASE("a triangle owns no minimum within its distance to ownership", "[granular][mesh]")
 {
     granular::Random random(19);
     const double slack = 0.05;
@@ -217,18 +218,50 @@ TEST_CASE("a triangle may own a minimum wherever it owns one within the slack", 
     for (int k = 0; k < 500; ++k) {
         const Vec3 p{random.number(-0.6, 0.6), random.number(-0.6, 0.6), random.number(-0.6, 0.6)};
         for (std::uint32_t t = 0; t < meshes.triangle.size(); ++t) {
-            const bool may = may_own(meshes.view(), t, p, slack);
+            const double away = distance_to_ownership(meshes.view(), t, p);
+            const bool may = away <= slack;
             close += (p - closest_point(meshes.view(), t, p)).norm() < 0.3 ? 1 : 0;
             listed += may && (p - closest_point(meshes.view(), t, p)).norm() < 0.3 ? 1 : 0;
             for (int m = 0; m < 20; ++m) {
                 const Vec3 moved = p + random.number(0, slack) * random.direction();
                 if (nearest(meshes.view(), t, moved, 1).distance < 1) {
                     ++owned;
-                    REQUIRE(may);
+                    REQUIRE((moved - p).norm() >= (1 - 1e-12) * away);
                 }
             }
         }
     }
     CHECK(owned > 1000);
     CHECK(5 * listed < 3 * close);
+}
+
+TEST_CASE("a minimum in a face remains there within the distance in the face", "[granular][mesh]")
+{
+    granular::Random random(29);
+    TriangleMesh bowl = granular::sphere_mesh(0.5, 2);  // smooth concave edges
+    for (auto& t : bowl.triangle) std::swap(t[1], t[2]);
+    const std::array<TriangleMesh, 3> shapes{
+        bowl, granular::sphere_mesh(0.5, 2),
+        granular::box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, true, 0.2)};
+    const TriangleMesh& shape = shapes[GENERATE(0u, 1u, 2u)];
+    const bool two_sided = GENERATE(false, true);
+    const Meshes meshes = meshes_of(shape, two_sided);
+    long inside = 0;
+    for (int k = 0; k < 1000; ++k) {
+        const Vec3 p{random.number(-0.6, 0.6), random.number(-0.6, 0.6), random.number(-0.6, 0.6)};
+        for (std::uint32_t t = 0; t < meshes.triangle.size(); ++t) {
+            const MeshTriangle& T = meshes.triangle[t];
+            const double least = distance_in_face(meshes.view(), t, p), side = T.face.height(p) < 0 ? -1 : 1;
+            if (!(least > 0)) continue;
+            ++inside;
+            CHECK(distance_to_ownership(meshes.view(), t, p) <= 0);
+            for (int m = 0; m < 20; ++m) {
+                const Vec3 moved = p + (1 - 1e-9) * least * random.direction();
+                const Nearest near = nearest(meshes.view(), t, moved, 2);
+                REQUIRE(near.distance == side * T.face.height(moved));
+                REQUIRE(near.n == side * T.face.n);
+            }
+        }
+    }
+    CHECK(inside > 200);
 }

@@ -254,6 +254,39 @@ TEST_CASE("a world with a mesh has the same bits for any number of threads and a
     CHECK(restored.to_bytes("run") == expected);
 }
 
+TEST_CASE("a checkpoint of a world with other triangles is refused with the boundary", "[granular][mesh]")
+{
+    const auto make = [](double edge) {
+        World world = empty_world();
+        world.add(Boundary{});
+        world.add(mesh_boundary(), granular::plate_mesh(1, 1, 0.5));
+        world.add(mesh_boundary({0, 0, 0.1}), granular::plate_mesh(1, 1, edge));
+        world.add(ball({0, 0, 2 * R}));
+        return world;
+    };
+    const std::string saved = make(0.25).to_bytes("run");
+    World same = make(0.25), other = make(0.2);
+    same.from_bytes(saved, "run", "file");
+    CHECK_THROWS_WITH(
+        other.from_bytes(saved, "run", "file"),
+        "file: the triangles of the mesh of boundary 2 have changed since the checkpoint was written");
+}
+
+TEST_CASE("meshes can be added after the first step", "[granular][mesh]")
+{
+    World world = empty_world(), other = empty_world();
+    const auto add = [](World& w, double z) {
+        w.add(mesh_boundary({0, 0, z}), granular::plate_mesh(0.5, 0.5, 0.1));
+    };
+    add(world, -0.2), add(other, -0.2);
+    world.add(ball({0.01, 0, 1.1 * R})), other.add(ball({0.01, 0, 1.1 * R}));
+    world.step(1);  // the engine shares the triangles now
+    add(world, 0), add(other, 0);
+    world.step(1999), other.step(2000);
+    CHECK(world.particles()[0].r == other.particles()[0].r);
+    CHECK(world.particles()[0].v.z > -0.2);
+}
+
 TEST_CASE("a mesh is added with its triangles", "[granular][mesh]")
 {
     World world = empty_world();

@@ -7,10 +7,12 @@
 ///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
 ///     build/native/hilda_granular_benchmark watch 10000   cost of the watch: CPU time of steps with and without it
 ///     build/native/hilda_granular_benchmark rows 50000    cost of a row of run.csv, in CPU times of a step
+///     build/native/hilda_granular_benchmark mesh 10000    cost of triangles, in CPU times of a step with planes
 ///
 /// For the bed at rest the program then prints the memory throughput of each part of a step: the bytes that
 /// it has to transfer at least, divided by its time, also as a fraction of the throughput of a copy.
 
+#include "granular/mesh/mesh_shapes.hpp"
 #include "granular/world/world.hpp"
 
 #include <algorithm>
@@ -31,7 +33,11 @@ namespace {
 
 constexpr double R = 1e-3, h = 5e-6;
 
-World bed(std::size_t n, Device device)
+/// What the bed lies in: a box of planes; a box of about 10 000 triangles; a box of planes above a terrain of
+/// about 1 000 000 triangles, which no particle is near
+enum class Container { planes, triangles, terrain };
+
+World bed(std::size_t n, Device device, Container container = Container::planes)
 {
     const Material glass{"glass", 2500, 7e7, 0.24};
     const double d = 2 * R, spacing = 1.05 * d, width = std::cbrt(static_cast<double>(n)) * d;
@@ -39,11 +45,26 @@ World bed(std::size_t n, Device device)
     const double layers = std::ceil(static_cast<double>(n) / per_row / per_row);
     WorldOptions o;
     o.low = {-d, -d, -d}, o.high = {width + d, width + d, layers * spacing + 3 * d};
+    if (container == Container::terrain) o.low.z -= 5 * d;
     o.h = h;
     o.device = device;
     World world(o, {glass});
     world.set_law(0, 0, hertz_mindlin(glass, 0.9, 0.3));
-    for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
+    Boundary mesh;
+    mesh.shape = Boundary::Shape::mesh;
+    if (container == Container::triangles) {
+        // of five squares, with two triangles for each cell
+        const double height = layers * spacing + 2 * d,
+                     edge = std::sqrt(2 * width * (width + 4 * height) / 10'000);
+        world.add(mesh, box_mesh({0, 0, 0}, {width, width, height}, {false, false, false, false, false, true},
+                                 true, edge));
+    } else {
+        for (const Boundary& b : open_box({0, 0, 0}, {width, width, 0})) world.add(b);
+    }
+    if (container == Container::terrain) {
+        mesh.r = {width / 2, width / 2, -4 * d};
+        world.add(mesh, plate_mesh(width, width, width / 707));
+    }
     unsigned seed = 1;
     const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) * 0x1p-31 - 1; };
     for (std::size_t k = 0; k < n; ++k) {
@@ -186,6 +207,36 @@ void report_row(const char* phase, World& world, long first)
     std::fflush(stdout);
 }
 
+/// Prints the CPU time of a step of the bed in a box of planes, and the medians of the ratios to it for the
+/// other containers. Blocks of steps alternate, so that the load of the machine affects all.
+void report_mesh(const char* phase, std::vector<World>& worlds, long first)
+{
+    for (World& world : worlds) world.step(first);
+    constexpr int rounds = 31;
+    constexpr long steps = 100;
+    std::vector<double> seconds(worlds.size()), planes;
+    std::vector<std::vector<double>> ratios(worlds.size());
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t k = 0; k < worlds.size(); ++k) {
+            const std::size_t which = round % 2 == 0 ? k : worlds.size() - 1 - k;
+            const double begin = cpu_time();
+            worlds[which].step(steps);
+            seconds[which] = (cpu_time() - begin) / steps;
+        }
+        planes.push_back(seconds[0]);
+        for (std::size_t k = 0; k < worlds.size(); ++k) ratios[k].push_back(seconds[k] / seconds[0]);
+    }
+    const auto median = [](std::vector<double>& of) {
+        std::nth_element(of.begin(), of.begin() + rounds / 2, of.end());
+        return of[rounds / 2];
+    };
+    std::printf("%9zu %-8s %11.1f", worlds[0].count(), phase, 1e6 * median(planes));
+    for (std::size_t k = 1; k < worlds.size(); ++k)
+        std::printf(" %9zu %6.3f", worlds[k].all_meshes().triangle.size(), median(ratios[k]));
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
@@ -210,12 +261,24 @@ try {
         report_row("at rest", world, std::lround(0.1 / h));
         return 0;
     }
+    if (argc == 3 && std::strcmp(argv[1], "mesh") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
+        omp_set_num_threads(1);
+        std::vector<World> worlds;
+        for (const Container in : {Container::planes, Container::triangles, Container::terrain})
+            worlds.push_back(bed(std::strtoul(argv[2], nullptr, 10), {}, in));
+        std::printf(
+            "                   step with    box of triangles    terrain below\n"
+            "particles phase    planes [us]    number  ratio    number  ratio\n");
+        report_mesh("falling", worlds, 20);
+        report_mesh("at rest", worlds, std::lround(0.25 / h));
+        return 0;
+    }
     const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;
     const bool gpu = argc > 2 && std::strcmp(argv[2], "cuda") == 0;
     if (n < 1 || (argc > 2 && !gpu)) {
-        std::fprintf(
-            stderr,
-            "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES | rows PARTICLES\n");
+        std::fprintf(stderr,
+                     "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES | rows PARTICLES "
+                     "| mesh PARTICLES\n");
         return 2;
     }
     World world = bed(n, {.kind = gpu ? Device::cuda : Device::cpu});

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the reference pages in docs/reference from the JSON schemas and from the help texts of the programs.
 
-    docs/generate.py                                            model-file.md and case-file.md
+    docs/generate.py                                            model-file.md, case-file.md and case-keys.md
     docs/generate.py --program HILDA --granular HILDA_GRANULAR  commands.md as well
     docs/generate.py --check [...]                              compares with the files and writes nothing
 
@@ -22,6 +22,10 @@ PAGES = ROOT / "docs" / "reference"
 FROM_SCHEMAS = "python3 docs/generate.py"
 FROM_PROGRAMS = "python3 docs/generate.py --program build/release/hilda --granular build/release/hilda-granular"
 NONE = "–"
+KEYS_ABOUT = ("One line for each key, grouped by the object to which it belongs. A key leads to its section of the reference, which has "
+              "the range, the whole description and an example. The column *of* has the types or laws that have the key; it is empty "
+              f"for those that all have. {NONE} in the column *default* marks an optional key without a constant default. `note`, free "
+              "text without effect, is left out here; most objects have it. `hilda-granular schema` prints the JSON schema.")
 SCHEMAS = ("dae/model.schema.json", "granular/case.schema.json")  # of hilda and hilda-granular
 
 
@@ -111,7 +115,7 @@ def short_link(title, group):
 
 
 def first_sentence(text):
-    return re.split(r"(?<=[.)\w])\. (?=[A-Z])", text.rstrip("."))[0] + "."
+    return re.split(r"(?<=[.)\w`*])\. (?=[A-Z])", text.rstrip("."))[0] + "."
 
 
 # --------------------------------------------------------------------------------------------------------- schemas
@@ -165,6 +169,16 @@ class SchemaPage:
         last = [name for name in ("note",) if name in properties]
         order = first + [name for name in properties if name not in first + last] + last
         return {name: (properties[name], name in required) for name in order}
+
+    def keys_and_members(self, node):
+        """(name, subschema, required) of all keys of an object, and of the members of those that are objects without a section
+        of their own, as lathe.profile"""
+        for name, (value, required) in self.keys(node).items():
+            yield name, value, required
+            if self.inherited(value, "title") is None:
+                for member, (inner, needed) in self.keys(value).items():
+                    if member != "note":
+                        yield f"{name}.{member}", inner, needed
 
     def variants(self, node):
         """The definitions among which the key type or law selects, in the order of the schema."""
@@ -220,7 +234,8 @@ class SchemaPage:
             return ", ".join(code(one_line(value)) for value in node["enum"])
         for word in ("anyOf", "oneOf"):
             if word in node:
-                return " or ".join(self.type_of(part) for part in node[word])
+                rest = {key: value for key, value in node.items() if key != word}
+                return " or ".join(self.type_of({**rest, **part}) for part in node[word])
         if "$ref" in node:
             target = self.target(node)
             return link(target["title"]) if "title" in target else self.type_of(target)
@@ -240,7 +255,7 @@ class SchemaPage:
 
     def unit_and_meaning(self, node):
         text = self.described(node).get("description", "")
-        unit = re.search(r" \[([^\]]+)\]", text)
+        unit = re.search(r" \[([^\],]+)\]", text)  # not a pair such as [radius, z]
         if unit is None:
             return NONE, self.prose(text)
         name = unit.group(1).replace("^2", "²").replace("^3", "³")
@@ -282,7 +297,7 @@ class SchemaPage:
         variants = self.variants(node)
         group = next((g for g in self.groups if any(v is node for v in self.variants(g))), None)
         rows, deprecated = [], []
-        for name, (value, required) in self.keys(node).items():
+        for name, value, required in self.keys_and_members(node):
             unit, meaning = self.unit_and_meaning(value)
             if value.get("deprecated"):
                 deprecated.append(f"- {code(name)}: {meaning}")
@@ -328,6 +343,57 @@ class SchemaPage:
         lines += [self.section(*section) for section in self.sections]
         lines.append("## Types of values")
         lines += [self.value_section(*value) for value in self.values]
+        return "\n\n".join(lines) + "\n"
+
+    # ---- one line for each key
+
+    def key_rows(self, title, node, of):
+        """Rows of the table of all keys: those of a group have the names of the variants that have the key. Equal keys of
+        several variants share a row."""
+        levels = {t: level for level, t, _ in self.sections}
+
+        def linked(text):
+            """Links to other tables of this page, or to the reference page."""
+            return re.sub(r"\[([^\]]*)\]\(#", lambda found: found.group(0) if levels.get(found.group(1)) == 2
+                          else f"[{found.group(1)}]({of}#", text)
+
+        def row(name, value, required, section, variants):
+            unit, meaning = self.unit_and_meaning(value)
+            return [f"[{code(name)}]({of}#{anchor(section)})", variants, linked(self.type_of(value)), unit,
+                    self.default_of(value, required), first_sentence(meaning) if meaning else NONE]
+
+        variants = self.variants(node)
+        selects = next((name for name in ("type", "law") if variants and name in self.keys(variants[0])), None)
+        rows = []
+        if selects:
+            names = [f"[{v['title'].removeprefix(title + ' ')}]({of}#{anchor(v['title'])})" for v in variants]
+            default = next((v["title"].removeprefix(title + " ") for v in variants
+                            if "default" in self.keys(v)[selects][0]), None)
+            default = self.keys(node).get(selects, ({}, True))[0].get("default", default)
+            rows.append([f"[{code(selects)}]({of}#{anchor(title)})", "", "one of " + ", ".join(names), NONE,
+                         "required" if default is None else code(one_line(default)), self.prose(first_sentence(node["description"]))])
+        shared = {}  # cells of a row without the first two -> the key and its variants
+        for part in variants or [node]:
+            for name, value, required in self.keys_and_members(part):
+                if name == "note" or name == selects or value.get("deprecated"):
+                    continue
+                cells = row(name, value, required, part.get("title", title), "")
+                shared.setdefault((name, *cells[2:]), (cells, []))[1].append(part.get("title", title).removeprefix(title + " "))
+        for cells, of_variants in shared.values():
+            all_of_them = not variants or len(of_variants) == len(variants)
+            rows.append([cells[0], "" if all_of_them else ", ".join(of_variants), *cells[2:]])
+        return rows
+
+    def keys_page(self, heading, of, about):
+        """All keys of the schema, one line each, with links to the reference page `of`"""
+        sections = [(title, node) for level, title, node in self.sections if level == 2]
+        lines = [f"# {heading}", notice(self.source, FROM_SCHEMAS), wrapped(about),
+                 wrapped(" · ".join(link(title) for title, _ in sections))]
+        for title, node in sections:
+            rows = self.key_rows(title, node, of)
+            columns = [0, 1, 2, 3, 4, 5] if any(row[1] for row in rows) else [0, 2, 3, 4, 5]
+            head = ["key", "of", "type", "unit", "default", "meaning"]
+            lines += [f"## {title}", table([head[k] for k in columns], [[row[k] for k in columns] for row in rows])]
         return "\n\n".join(lines) + "\n"
 
 
@@ -522,7 +588,8 @@ def main():
                 print(f"{name} written")
         model, case = (SchemaPage(ROOT / name) for name in SCHEMAS)
         pages = {"model-file.md": (model.page("Model file reference"), FROM_SCHEMAS),
-                 "case-file.md": (case.page("Granular case file reference"), FROM_SCHEMAS)}
+                 "case-file.md": (case.page("Granular case file reference"), FROM_SCHEMAS),
+                 "case-keys.md": (case.keys_page("All keys of a granular case", "case-file.md", KEYS_ABOUT), FROM_SCHEMAS)}
         if options.program is not None:
             pages["commands.md"] = (commands_page(options.program, options.granular), FROM_PROGRAMS)
     except Failure as failure:

@@ -4,9 +4,9 @@
 
     granular-run.py DIR [--quantity energy,momentum,...]
 
-reads DIR/run.csv and writes DIR/run.png: energies, momentum, numbers of contacts and particles, stress, loads on the
-boundaries and the motion of those that move, over time. Force and torque are the magnitudes of the loads of the particles on
-a boundary, for the MOST_CURVES boundaries with the largest loads; the caption names the others. A panel without values is
+reads DIR/run.csv and writes DIR/run.png: energies, momentum, numbers of contacts and particles, mass flow, stress, loads on
+the boundaries and the motion of those that move, over time. Force and torque are the magnitudes of the loads of the particles
+on a boundary, for the MOST_CURVES boundaries with the largest loads; the caption names the others. A panel without values is
 left out. DIR/loads.csv becomes DIR/loads.png, and each DIR/fields-NAME.csv becomes DIR/fields-NAME.png.
 """
 import math
@@ -68,6 +68,16 @@ def particles(axes, rows, _):
     axis(axes, "$t$ [s]", "number")
 
 
+def flow(axes, rows, _):
+    for name, style, label in (("inserted_mass_rate", {"ls": "--", "color": "0.5"}, "inserted"),
+                               ("removed_mass_rate", {"color": "k"}, "removed")):
+        if any(column(rows, name)):
+            axes.plot(numbers(rows, "t"), column(rows, name), lw=1.1, label=label, **style)
+    axes.set_ylim(bottom=0)
+    axes.legend(frameon=False, fontsize=9)
+    axis(axes, "$t$ [s]", "mass flow [kg/s]")
+
+
 def stress(axes, rows, _):
     for k, name in enumerate(("xx", "yy", "zz", "xy", "yz", "zx")):
         axes.plot(numbers(rows, "t"), numbers(rows, "stress_" + name), DASHES[k // 3], color=COLOURS[k], lw=1.1,
@@ -110,7 +120,8 @@ def motion(kind, label):
 
 
 PANELS = {"energy": energy, "potential": potential, "momentum": momentum, "contacts": contacts, "particles": particles,
-          "stress": stress, "force": loads("F", "force on a boundary [N]"), "torque": loads("T", "torque on a boundary [N m]"),
+          "flow": flow, "stress": stress, "force": loads("F", "force on a boundary [N]"),
+          "torque": loads("T", "torque on a boundary [N m]"),
           "displacement": motion("", "displacement of a boundary [m]"), "velocity": motion("v", "velocity of a boundary [m/s]"),
           "rotation": motion("w", "angular velocity of a boundary [rad/s]")}
 
@@ -124,6 +135,7 @@ def empty_panels(rows, shown):
         "energy": none("kinetic_energy"), "potential": none("potential_energy"),
         "momentum": none("momentum_x", "momentum_y", "momentum_z"), "contacts": none("pairs"),
         "particles": len(set(column(rows, "particles"))) == 1 and none("removed"),
+        "flow": none("inserted_mass_rate", "removed_mass_rate"),
         "stress": none(*(f"stress_{a}{b}" for a in "xyz" for b in "xyz")),
         "force": not any(any(magnitudes(rows, b, "F")) for b in shown),
         "torque": not any(any(magnitudes(rows, b, "T")) for b in shown),

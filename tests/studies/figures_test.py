@@ -241,6 +241,16 @@ class Figures(unittest.TestCase):
         self.assertEqual([text.get_text() for text in displacement.get_legend().get_texts()], ["lid z"])
         self.assertEqual(list(displacement.lines[0].get_ydata()), list(range(20)))
 
+    def test_a_granular_run_with_outflow_has_a_panel_of_the_mass_flow(self):
+        self.granular_run()
+        with open(os.path.join(self.folder, "run.csv"), encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        write(self.folder, "run.csv", [row | {"removed_mass_rate": 0.1 * (k > 4)} for k, row in enumerate(rows)])
+        figures, _ = draw("granular-run.py", self.folder, "--quantity", "flow")
+        self.check(figures["run.png"])
+        axes, = figures["run.png"].axes
+        self.assertEqual([list(line.get_ydata()) for line in axes.lines], [[0] * 5 + [0.1] * 15])
+
     def test_fields_are_drawn_as_profiles_or_slices_and_mean_loads_with_bands(self):
         self.granular_run()
         names = ["density", "volume_fraction", *(f"{q}_{a}" for q in ("momentum", "velocity", "boundary_force") for a in "xyz"),

@@ -6,6 +6,7 @@
 
 Checked are README.md, CONTRIBUTING.md, CHANGELOG.md, studies/README.md and all pages in docs and examples:
 - The reference pages are those that docs/generate.py writes. commands.md needs the two programs.
+- Drawings in docs are those that the scripts beside them write.
 - Relative links lead to files and headings that exist.
 - File names in backticks such as `lie/so3.hpp` exist. `lie/steps/*.hpp` matches at least one file. Names of examples such as
   `dae/forces/x.cpp`, `contact/detection/x_y.cpp`, `dae/forces/NAME.cpp` and `dae/forces/my_force.cpp` are not checked,
@@ -141,6 +142,11 @@ def main():
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         faults.append((done.stdout + done.stderr).strip())
+
+    for script in sorted((ROOT / "docs").rglob("figures/*.py")):
+        done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True)
+        if done.returncode != 0:
+            faults.append((done.stdout + done.stderr).strip())
 
     for path in pages():
         name = path.relative_to(ROOT).as_posix()

@@ -55,12 +55,7 @@ std::vector<NamedBoundary> read_box(ObjectReader& o, NamedBoundary box)
         plane.name = plane.motion.name = box.name + ObjectReader::side_names[side];
         plane.boundary.axis = normals[side];
         const Vec3 corner = side % 2 == 0 ? low : high;
-        plane.boundary.r += corner;
-        if (box.motion.r) {
-            const double from[] = {corner.x, corner.y, corner.z};
-            for (int k = 0; k < 3; ++k)
-                plane.motion.r->of[k] = [f = box.motion.r->of[k], c = from[k]](double t) { return c + f(t); };
-        }
+        displace(plane, corner);
         all.push_back(std::move(plane));
     }
     if (all.empty()) o.fail("open", "open must not contain all six sides");
@@ -74,24 +69,70 @@ std::vector<NamedBoundary> read_plane(ObjectReader& o, NamedBoundary plane)
     return {plane};
 }
 
-/// A surface with an inside. The further keys: radius; axis, radius; or axis, half_angle
-template <Boundary::Shape shape>
-std::vector<NamedBoundary> read_round(ObjectReader& o, NamedBoundary round)
+std::vector<NamedBoundary> read_sphere(ObjectReader& o, NamedBoundary sphere)
 {
-    read_body(o, round);
-    Boundary& b = round.boundary;
+    Boundary& b = sphere.boundary;
+    b.shape = Boundary::Shape::sphere;
     b.inside = o.flag("inside", false);
-    b.shape = shape;
-    if (shape != Boundary::Shape::sphere) b.axis = o.direction("axis");
-    if (shape != Boundary::Shape::cone) {
-        b.radius = o.positive("radius");
-        return {round};
-    }
+    b.radius = o.positive("radius");
+    if (b.inside != 0 && o.has("density"))
+        o.fail("density", "density needs particles outside of the sphere, got inside true");
+    read_body(o, sphere, read_density(o, solid_ball(1, b.radius)));
+    return {sphere};
+}
+
+/// Refuses the keys of finite surfaces for an infinite one.
+void refuse_finite_keys(ObjectReader& o, const char* type)
+{
+    for (const char* key : {"open", "two_sided", "density", "centre"})
+        if (o.has(key)) o.fail(key, std::string(key) + " is only for a " + type + " with a length, got none");
+}
+
+std::vector<NamedBoundary> read_cylinder(ObjectReader& o, NamedBoundary cylinder)
+{
+    Boundary& b = cylinder.boundary;
+    b.axis = o.direction("axis");
+    b.radius = o.positive("radius");
+    if (o.has("length")) return read_frustum(o, cylinder, b.radius, b.radius);
+    refuse_finite_keys(o, "cylinder");
+    b.shape = Boundary::Shape::cylinder;
+    b.inside = o.flag("inside", false);
+    read_body(o, cylinder);
+    return {cylinder};
+}
+
+std::vector<NamedBoundary> read_cone(ObjectReader& o, NamedBoundary cone)
+{
+    Boundary& b = cone.boundary;
+    b.axis = o.direction("axis");
     const double half = o.number("half_angle");
     if (!(half > 0 && half < M_PI / 2))
         o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + io::shortest(half));
+    if (o.has("length")) return read_frustum(o, cone, 0, std::tan(half) * o.positive("length"));
+    refuse_finite_keys(o, "cone");
+    b.shape = Boundary::Shape::cone;
     b.cosine = std::cos(half), b.sine = std::sin(half);
-    return {round};
+    b.inside = o.flag("inside", false);
+    read_body(o, cone);
+    return {cone};
+}
+
+/// A body without a surface of its own
+std::vector<NamedBoundary> read_body_of_parts(ObjectReader& o, NamedBoundary body)
+{
+    body.boundary.shape = Boundary::Shape::none;
+    body.sums_parts = o.flag("from_parts", false);
+    if (body.sums_parts)
+        for (const char* key : {"r", "mass", "inertia"})
+            if (o.has(key))
+                o.fail(key, std::string(key) + " must not be given together with from_parts, got " +
+                                described(*o.find(key)));
+    if (o.has("part_of"))
+        o.fail("part_of", "part_of must not be given for the type body, which has parts itself, got " +
+                              described(*o.find("part_of")));
+    // The sums replace these values, see CaseReader.
+    read_body(o, body, body.sums_parts ? std::optional(SolidBody{1, Inertia(1)}) : std::nullopt);
+    return {body};
 }
 
 const std::vector<std::string> common = {"boundary_keys"}, of_body = {"boundary_keys", "body_keys"};
@@ -117,6 +158,14 @@ const io::KeySchema radius = {"radius", "Radius [m].", R"("$ref": "#/$defs/posit
                     inside = {"inside",
                               "If true, the particles are inside of the surface; otherwise they are outside.",
                               R"("type": "boolean", "default": false, "examples": [true])"};
+
+/// These keys followed by those of a finite surface
+std::vector<io::KeySchema> with_length(std::vector<io::KeySchema> keys)
+{
+    const std::vector<io::KeySchema> more = frustum_keys(false);
+    keys.insert(keys.end(), more.begin(), more.end());
+    return keys;
+}
 
 const bool registered =
     io::Registry<BoundaryType>::add(
@@ -155,32 +204,53 @@ const bool registered =
          read_box}) &&
     io::Registry<BoundaryType>::add(
         {"cylinder",
-         {.description = "Infinite circular cylinder.",
+         {.description = "Circular cylinder, infinite or with a length.",
           .parts = of_body,
-          .keys = {axis("Direction of the axis [-], in the global frame."), radius, inside,
-                   place("A point of the axis")},
+          .keys = with_length({axis("Direction of the axis [-], in the global frame."), radius, inside,
+                               place("A point of the axis, with length the centre of the first end")}),
           .example =
               R"("name": "drum", "axis": [0, 1, 0], "radius": 0.05, "inside": true, "omega": [0, 3, 0])"},
-         read_round<Boundary::Shape::cylinder>}) &&
+         read_cylinder}) &&
     io::Registry<BoundaryType>::add(
         {"cone",
-         {.description = "Infinite circular cone that opens along its axis.",
+         {.description = "Circular cone that opens along its axis, infinite or with a length.",
           .parts = of_body,
-          .keys = {axis("Direction from the apex in which the cone opens [-], in the global frame."),
-                   {"half_angle", "Angle between axis and surface [rad].",
-                    R"("type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966,
+          .keys = with_length(
+              {axis("Direction from the apex in which the cone opens [-], in the global "
+                    "frame."),
+               {"half_angle", "Angle between axis and surface [rad].",
+                R"("type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966,
                        "examples": [0.5])",
-                    true},
-                   inside,
-                   place("The apex")},
+                true},
+               inside,
+               place("The apex")}),
           .example = R"("name": "hopper", "axis": [0, 0, 1], "half_angle": 0.5, "inside": true)"},
-         read_round<Boundary::Shape::cone>}) &&
+         read_cone}) &&
     io::Registry<BoundaryType>::add({"sphere",
                                      {.description = "Sphere.",
                                       .parts = of_body,
-                                      .keys = {radius, inside, place("The centre")},
+                                      .keys = {radius,
+                                               inside,
+                                               place("The centre"),
+                                               {"density",
+                                                "Density of the solid ball, instead of mass [kg/m^3]. Mass "
+                                                "and inertia are those of the ball; "
+                                                "inertia replaces the latter.",
+                                                R"("$ref": "#/$defs/positive", "examples": [7800])"}},
                                       .example = R"("name": "obstacle", "radius": 0.01, "r": [0, 0, 0.02])"},
-                                     read_round<Boundary::Shape::sphere>});
+                                     read_sphere}) &&
+    io::Registry<BoundaryType>::add(
+        {"body",
+         {.description = "Rigid body without a surface of its own. Other boundaries are its surfaces: their "
+                         "part_of has its name.",
+          .parts = of_body,
+          .keys = {{"from_parts",
+                    "If true, mass, centre of mass and inertia are the sums over the parts, which all have a "
+                    "density. r, mass and inertia must not be given.",
+                    R"("type": "boolean", "default": false, "examples": [true])"},
+                   place("The centre of mass, or the point to which velocity and loads refer")},
+          .example = R"("name": "dumb-bell", "from_parts": true)"},
+         read_body_of_parts});
 
 /// A matrix of three rows, row by row
 std::array<double, 9> matrix(ObjectReader& o, const std::string& key)
@@ -230,8 +300,33 @@ Inertia read_inertia(ObjectReader& o)
 
 }  // namespace
 
+std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid)
+{
+    if (!o.has("density")) return {};
+    if (o.has("mass")) o.fail("density", "density must not be given together with mass");
+    const double density = o.positive("density");
+    const Inertia& J = solid.inertia;
+    return SolidBody{density * solid.mass,
+                     Inertia(std::array{density * J.xx, density * J.yy, density * J.zz, density * J.xy,
+                                        density * J.yz, density * J.zx}),
+                     solid.centre};
+}
+
+void displace(NamedBoundary& b, const Vec3& d)
+{
+    b.boundary.r += d;
+    if (!b.motion.r) return;
+    const double by[] = {d.x, d.y, d.z};
+    for (std::size_t k = 0; k < 3; ++k)
+        b.motion.r->of[k] = [f = b.motion.r->of[k], c = by[k]](double t) { return c + f(t); };
+}
+
 void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBody>& solid)
 {
+    if (o.has("part_of")) {
+        body.solid = solid;
+        return;
+    }
     Boundary& b = body.boundary;
     read_vector(o, "omega", b.omega, body.motion.omega);
     if (solid)
@@ -262,7 +357,18 @@ void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBo
 std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name)
 {
     const std::string type = o.one_of("type", io::Registry<BoundaryType>::names());
-    return io::Registry<BoundaryType>::find(type)->read(o, read_motion(o, name));
+    std::vector<NamedBoundary> all = io::Registry<BoundaryType>::find(type)->read(o, read_motion(o, name));
+    if (!o.has("part_of")) return all;
+    const std::string body = o.text("part_of");
+    for (const char* key : {"v", "omega", "mass", "inertia", "free", "F", "T"})
+        if (o.has(key))
+            o.fail(key, std::string(key) + " must not be given for a part, which moves with " +
+                            io::described(body) + ", got " + described(*o.find(key)));
+    if (o.has_formula("r"))
+        o.fail("r", "r must be three numbers for a part, which moves with " + io::described(body) + ", got " +
+                        described(*o.find("r")));
+    for (NamedBoundary& b : all) b.part_of = body;
+    return all;
 }
 
 }  // namespace hilda::granular

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/case/object_reader.hpp"
+#include "granular/case/solid_body.hpp"
 #include "granular/mesh/triangle_mesh.hpp"
 #include "io/type_schema.hpp"
 
@@ -17,6 +18,9 @@ struct NamedBoundary {
     std::optional<TriangleMesh> mesh = {};  ///< of a boundary with Shape::mesh
     bool two_sided = false;                 ///< whether the particles may be on both sides of the mesh
     BoundaryMotion motion = {};             ///< prescribed motion and load; the boundary number is not set
+    std::string part_of = {};               ///< name of the body of which it is a part
+    std::optional<SolidBody> solid = {};    ///< of a part with a density
+    bool sums_parts = false;                ///< whether the mass properties are the sums over the parts
 
     /// Whether the boundary moves under its loads or by a prescribed velocity
     bool moves() const
@@ -35,15 +39,22 @@ struct BoundaryType {
     std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);
 };
 
-/// A homogeneous body
-struct SolidBody {
-    double mass;  ///< [kg]
-    Inertia inertia;
-};
-
 /// Reads the keys of a boundary that may have a mass: omega, mass, inertia, free, F and T. `solid` replaces
-/// the mass, and the inertia if there is no such key.
+/// the mass, and the inertia if there is no such key. A part of a body has none of the keys.
 void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBody>& solid = {});
+/// Reads the density of a solid, which is of the density 1, if there is this key. Throws io::PlacedError if
+/// there is a mass as well.
+std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid);
+
+/// Displaces the place of a boundary, of numbers or formulas, by d [m].
+void displace(NamedBoundary& b, const Vec3& d);
+
+/// Makes a finite cylinder or cone of a boundary with axis and place, with the given radii at its ends [m],
+/// and reads its further keys. Returns the frustum, and its end faces if the particles are inside.
+std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary b, double radius,
+                                        double second_radius);
+/// The keys of read_frustum(). `needs_length`: whether length is required
+std::vector<io::KeySchema> frustum_keys(bool needs_length);
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.

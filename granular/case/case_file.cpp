@@ -132,7 +132,10 @@ public:
         if (materials.empty()) o.fail("materials", "a case must have at least one material, got none");
         out.world = std::make_unique<World>(world, materials);
         for (ObjectReader& l : o.objects("laws")) law(l);
-        for (ObjectReader& b : o.objects("boundaries")) boundary(b);
+        for (ObjectReader& b : o.objects("boundaries")) read_boundaries(b);
+        sum_parts();
+        for (auto& [n, place] : bounds) add_boundary(n, place);
+        set_parts();
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
         for (ObjectReader& i : o.objects("insert")) insertion(i);
@@ -269,28 +272,82 @@ private:
         }
     }
 
-    void boundary(ObjectReader& o)
+    /// Reads the boundaries of an entry.
+    void read_boundaries(ObjectReader& o)
     {
         const int boundary_material = material(o);
-        const std::string name = o.name("name", "boundary " + std::to_string(out.boundaries.size()));
+        const std::string name = o.name("name", "boundary " + std::to_string(bounds.size()));
         if (name.find_first_of(",\"") != std::string::npos)
             o.fail("name",
                    "name must not contain commas and quotes, because it is part of column names, got " +
                        io::described(name));
         for (NamedBoundary& n : read_boundary(o, name)) {
-            if (std::find(out.boundaries.begin(), out.boundaries.end(), n.name) != out.boundaries.end())
+            if (find(n.name) != nullptr)
                 o.fail("name", "two boundaries have the same name, got " + io::described(n.name));
             n.boundary.material = boundary_material;
-            n.motion.boundary = o.located([&] {
-                return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
-            });
-            if (n.mesh) check_place(o, n);
-            if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
-            if (n.moves()) out.moving.push_back(n.motion.boundary);
-            if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
-            out.boundaries.push_back(n.name);
+            bounds.emplace_back(std::move(n), o);
         }
         o.finish();
+    }
+
+    /// The boundary with this name, or nullptr
+    const NamedBoundary* find(const std::string& name) const
+    {
+        const auto at =
+            std::find_if(bounds.begin(), bounds.end(), [&](const auto& b) { return b.first.name == name; });
+        return at == bounds.end() ? nullptr : &at->first;
+    }
+
+    /// Checks the keys part_of, and sets the mass properties of the bodies that take them from their parts.
+    void sum_parts()
+    {
+        for (const auto& [n, o] : bounds) {
+            if (n.part_of.empty()) continue;
+            const NamedBoundary* const body = find(n.part_of);
+            if (body == nullptr)
+                o.fail("part_of", "part_of must name a boundary, got " + io::described(n.part_of));
+            if (!body->part_of.empty())
+                o.fail("part_of", "part_of must name a boundary that is not a part itself, got " +
+                                      io::described(n.part_of) + ", which is a part of " +
+                                      io::described(body->part_of));
+            if (body->sums_parts && !n.solid)
+                o.fail("", "a part of " + io::described(n.part_of) +
+                               ", which has from_parts, needs a density of its solid, got none");
+            if (!body->sums_parts && n.solid)
+                o.fail("density", "density of a part needs a body with from_parts true, got " +
+                                      io::described(n.part_of) + " without it");
+        }
+        for (auto& [n, o] : bounds) {
+            if (!n.sums_parts) continue;
+            std::vector<PlacedSolid> solids;
+            for (const auto& other : bounds)
+                if (other.first.part_of == n.name)
+                    solids.push_back({*other.first.solid, other.first.boundary.r, other.first.boundary.p});
+            if (solids.empty()) o.fail("from_parts", "from_parts needs parts with part_of, got none");
+            const SolidBody body = sum(solids);
+            n.boundary.mass = body.mass, n.boundary.inertia = body.inertia, n.boundary.r = body.centre;
+        }
+    }
+
+    void add_boundary(NamedBoundary& n, ObjectReader& o)
+    {
+        n.motion.boundary = o.located([&] {
+            return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
+        });
+        if (n.mesh) check_place(o, n);
+        n.mesh.reset();  // the world has its triangles
+        if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
+        if (n.part_of.empty() ? n.moves() : find(n.part_of)->moves()) out.moving.push_back(n.motion.boundary);
+        if (n.boundary.mass > 0 && free.empty()) free = o.pointer();
+        out.boundaries.push_back(n.name);
+    }
+
+    /// Attaches the parts to their bodies.
+    void set_parts() const
+    {
+        for (const auto& [n, o] : bounds)
+            if (!n.part_of.empty())
+                o.located([&] { out.world->set_part(n.motion.boundary, find(n.part_of)->motion.boundary); });
     }
 
     /// The number of the boundary that the key attached_to names, or -1
@@ -419,8 +476,9 @@ private:
     std::vector<Material> materials;
     std::map<std::pair<int, int>, std::string> law_places;  ///< by the smaller and the larger material index
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
-    std::vector<std::pair<std::string, double>> meshes;  ///< places and diagonals [m]
-    std::string free;                                    ///< pointer of the first boundary with a mass
+    std::vector<std::pair<NamedBoundary, ObjectReader>> bounds;  ///< with their entries
+    std::vector<std::pair<std::string, double>> meshes;          ///< places and diagonals [m]
+    std::string free;    ///< pointer of the first boundary with a mass
     double largest = 0;  ///< diameter of the particles that are given one by one [m]
     bool rotation_laws = false;
     std::vector<FillSpec> fills;

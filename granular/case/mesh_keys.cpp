@@ -109,10 +109,9 @@ TriangleMesh read_triangles(ObjectReader& o)
     }
 }
 
-/// The solid of this density inside the mesh. Sets its centre of mass.
-SolidBody read_solid(ObjectReader& o, const TriangleMesh& mesh, Vec3& centre)
+/// The solid inside the mesh, of the density 1
+SolidBody solid_inside(ObjectReader& o, const TriangleMesh& mesh)
 {
-    const double density = o.positive("density");
     if (const std::size_t open = open_edges(mesh); open > 0)
         o.fail("density",
                "density needs a closed mesh, got one with " + std::to_string(open) + " open edges");
@@ -120,22 +119,14 @@ SolidBody read_solid(ObjectReader& o, const TriangleMesh& mesh, Vec3& centre)
     if (!(p.volume > 0))
         o.fail("density", "density needs a mesh with normals out of a solid, got one that encloses " +
                               io::shortest(p.volume) + " m^3");
-    centre = p.centre;
-    std::array<double, 6> J = p.J;
-    for (double& x : J) x *= density;
-    return {density * p.volume, Inertia(J)};
+    return {p.volume, Inertia(p.J), p.centre};
 }
 
 /// Makes the centre of mass the origin of the mesh and the place of the boundary.
 void set_centre(NamedBoundary& b, const Vec3& centre)
 {
     for (Vec3& v : b.mesh->vertex) v = v - centre;
-    const Vec3 d = rotated(b.boundary.p, centre);
-    b.boundary.r += d;
-    if (!b.motion.r) return;
-    const double from[] = {d.x, d.y, d.z};
-    for (std::size_t k = 0; k < 3; ++k)
-        b.motion.r->of[k] = [f = b.motion.r->of[k], c = from[k]](double t) { return c + f(t); };
+    displace(b, rotated(b.boundary.p, centre));
 }
 
 std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
@@ -146,12 +137,9 @@ std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
     b.boundary.p = turned({1, {0, 0, 0}}, o.vec3("rotation", Vec3{0, 0, 0}));
     o.located([&] { check_mesh(*b.mesh, b.name); });
     std::optional<SolidBody> solid;
-    Vec3 centre{0, 0, 0};
-    if (o.has("density")) {
-        if (o.has("mass")) o.fail("density", "density must not be given together with mass");
-        solid = read_solid(o, *b.mesh, centre);
-    }
+    if (o.has("density")) solid = read_density(o, solid_inside(o, *b.mesh));
     read_body(o, b, solid);
+    Vec3 centre = solid ? solid->centre : Vec3{0, 0, 0};
     if (b.boundary.mass > 0) centre = o.vec3("centre", centre);
     if (centre != Vec3{0, 0, 0}) set_centre(b, centre);
     return {b};

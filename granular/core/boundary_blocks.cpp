@@ -132,7 +132,7 @@ void SurfaceLists::search(const Boundary& b, const Box& box, std::uint32_t numbe
         half_diagonal2 += half * half;
         if (box.last[k] - box.first[k] > box.last[longest] - box.first[longest]) longest = k;
     }
-    if (nearest(b, centre).distance - std::sqrt(half_diagonal2) > reach_of) return;
+    if (distance_bound(b, centre) - std::sqrt(half_diagonal2) > reach_of) return;
     const std::int32_t first = box.first[longest], last = box.last[longest];
     if (last - first == 1) {
         const std::int32_t row = box.first[2] * blocks[1] + box.first[1];

@@ -49,7 +49,7 @@ struct BoundaryBlockView {
 /// their cells.
 ///
 /// The boxes of the blocks are halved repeatedly. A boundary is not near a box if its distance from the
-/// centre, less half of the diagonal, is above the reach: the signed distance changes by at most 1 m per m.
+/// centre, less half of the diagonal, is above the reach: distance_bound() changes by at most 1 m per m.
 /// Points behind a boundary have a negative distance, so that it is listed there. A triangle is near the
 /// blocks that its box and its plane meet, both enlarged by the reach.
 class SurfaceLists {
@@ -104,15 +104,16 @@ private:
     /// Members of a boundary that determine its surface
     struct Surface {
         Boundary::Shape shape;
-        std::int32_t inside;
+        std::int32_t inside, flags;
         Vec3 r, axis;
-        double radius, cosine, sine, e0;
+        double radius, second_radius, from, to, cosine, sine, e0;
         Vec3 e;
         bool operator==(const Surface&) const = default;
     };
     static Surface surface_of(const Boundary& b)
     {
-        return {b.shape, b.inside, b.r, b.axis, b.radius, b.cosine, b.sine, b.p.e0, b.p.e};
+        return {b.shape, b.inside, b.flags,  b.r,    b.axis, b.radius, b.second_radius,
+                b.from,  b.to,     b.cosine, b.sine, b.p.e0, b.p.e};
     }
 
     CellGrid of;           ///< the grid of the lists

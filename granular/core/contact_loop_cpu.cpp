@@ -167,7 +167,7 @@ struct ContactLoop : detail::ContactPacks {
             const Pack R = detail::gather_rows<Pack>(particles.velocity, i).w;
             alignas(64) double overlap[lanes];
             for (int k = 0; k < lanes; ++k)
-                overlap[k] = R.v[k] - nearest(b, {r.x[k], r.y[k], r.z[k]}).distance;
+                overlap[k] = R.v[k] - (Vec3{r.x[k], r.y[k], r.z[k]} - b.r).dot(b.axis);
             for (std::uint32_t k = 0; k < valid; ++k) {
                 if (overlap[k] > 0)
                     pairs.in_contact[n[k]] = 1, touching[touching_count++] = n[k];

@@ -28,6 +28,12 @@ HILDA_HD inline Vec<double> rotated_back(const EulerParameters<double>& p, const
     return rotated({p.e0, -p.e}, x);
 }
 
+/// p ⊗ q: the rotation q followed by the rotation p
+inline EulerParameters<double> product(const EulerParameters<double>& p, const EulerParameters<double>& q)
+{
+    return {p.e0 * q.e0 - p.e.dot(q.e), p.e0 * q.e + q.e0 * p.e + p.e.cross(q.e)};
+}
+
 /// exp(angle/2) ⊗ p, normalised: the rotation p followed by the rotation vector `angle` in the global frame
 inline EulerParameters<double> turned(const EulerParameters<double>& p, const Vec<double>& angle)
 {

@@ -71,7 +71,8 @@ bool Obstacles::touches(const Vec3& r, double radius) const
 {
     for (const std::uint32_t k : near) {
         const Boundary& b = world.all_boundaries()[surfaces.boundary_of(k)];
-        if (is_larger_than(b, radius) || surfaces.nearest(k, r, radius).distance < radius) return true;
+        const bool is_full = b.shape != Boundary::Shape::frustum && is_larger_than(b, radius);
+        if (is_full || surfaces.nearest(k, r, radius).distance < radius) return true;
     }
     const Cell at = cell_of(r);
     for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)

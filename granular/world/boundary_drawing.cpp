@@ -114,9 +114,22 @@ Polygons mesh_drawing(const Boundary& b, const Meshes& meshes, std::uint32_t of)
 Polygons drawing(const Boundary& b, const Vec3& low, const Vec3& high)
 {
     if (b.shape == Boundary::Shape::plane) return plane(b, low, high);
+    if (b.shape == Boundary::Shape::none) return {};
     std::vector<std::pair<double, double>> rings;
     const auto [least, most] = extent(b, low, high);
-    if (b.shape == Boundary::Shape::cylinder) {
+    if (b.shape == Boundary::Shape::frustum) {
+        const bool has_faces = b.inside == 0;
+        if (has_faces && (b.flags & open_first_end) == 0) rings.emplace_back(b.from, 0);
+        rings.emplace_back(b.from, b.radius), rings.emplace_back(b.to, b.second_radius);
+        if (has_faces && (b.flags & open_second_end) == 0) rings.emplace_back(b.to, 0);
+    } else if (b.shape == Boundary::Shape::disk) {
+        rings = {{0, b.radius}, {0, 0}};
+    } else if (b.shape == Boundary::Shape::torus) {
+        for (int k = 0; k <= down; ++k) {
+            const double angle = 2 * pi * k / down;
+            rings.emplace_back(-b.radius * std::cos(angle), b.second_radius + b.radius * std::sin(angle));
+        }
+    } else if (b.shape == Boundary::Shape::cylinder) {
         rings = {{least, b.radius}, {most, b.radius}};
     } else if (b.shape == Boundary::Shape::cone) {
         if (most <= 0) return {};

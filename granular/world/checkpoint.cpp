@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 14};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 15};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>
@@ -168,6 +168,11 @@ std::string changes(const Boundary& now, const Boundary& saved)
           {"moment of inertia xx", now.inertia.xx, saved.inertia.xx},
           {"moment of inertia yy", now.inertia.yy, saved.inertia.yy},
           {"moment of inertia zz", now.inertia.zz, saved.inertia.zz},
+          {"second radius", now.second_radius, saved.second_radius},
+          {"lower end", now.from, saved.from},
+          {"upper end", now.to, saved.to},
+          {"flags", double(now.flags), double(saved.flags)},
+          {"body", double(now.body), double(saved.body)},
           {"cosine", now.cosine, saved.cosine},
           {"sine", now.sine, saved.sine},
           {"material", double(now.material), double(saved.material)},

@@ -78,16 +78,45 @@ int World::add(const Boundary& b)
     return add_boundary(b);
 }
 
+namespace {
+
+/// Refuses the dimensions of a boundary that it cannot have.
+void check_shape(const Boundary& b)
+{
+    using Shape = Boundary::Shape;
+    const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+    const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
+    const bool round = b.shape == Shape::cylinder || b.shape == Shape::sphere || b.shape == Shape::disk ||
+                       b.shape == Shape::torus;
+    if (round && !positive(b.radius)) refuse("boundary", "the radius must be positive", b.radius);
+    if (b.shape == Shape::torus && !(b.second_radius > b.radius && std::isfinite(b.second_radius)))
+        refuse("boundary", "the ring of a torus must be larger than its tube", b.second_radius);
+    if (b.shape != Shape::frustum) return;
+    for (const double R : {b.radius, b.second_radius})
+        if (!not_negative(R)) refuse("boundary", "the radii of a frustum must not be negative", R);
+    if (!(b.radius > 0 || b.second_radius > 0))
+        refuse("boundary", "one radius of a frustum must be positive", b.second_radius);
+    if (!positive(b.to - b.from)) refuse("boundary", "the length must be positive", b.to - b.from);
+    const double along = b.cosine * (b.second_radius - b.radius) - b.sine * (b.to - b.from);
+    if (!(std::abs(along) <= 1e-9 * (b.to - b.from)) || !(std::abs(std::hypot(b.cosine, b.sine) - 1) < 1e-9))
+        refuse("boundary", "the half angle of a frustum must be that of its radii; difference [m]", along);
+    const bool is_open = (b.flags & open_first_end) != 0 && (b.flags & open_second_end) != 0;
+    if ((b.flags & two_sided_surface) != 0 && (b.inside != 0 || !is_open))
+        refuse("boundary", "a two-sided frustum must have open ends; flags", b.flags);
+}
+
+}  // namespace
+
 int World::add_boundary(const Boundary& b)
 {
+    if (b.body >= 0) refuse("boundary", "must become a part by set_part()", b.body);
+
     if (b.material < 0 || b.material >= static_cast<int>(materials.size()))
         refuse("boundary", "no material has this number", b.material);
     if (!finite(b.r) || !finite(b.v) || !finite(b.omega) || !finite(b.F) || !finite(b.T))
         refuse("boundary", "position, velocities, force and torque must be finite",
                not_finite({b.r, b.v, b.omega, b.F, b.T}));
-    const bool round = b.shape == Boundary::Shape::cylinder || b.shape == Boundary::Shape::sphere;
-    if (round && !(b.radius > 0 && std::isfinite(b.radius)))
-        refuse("boundary", "the radius must be positive", b.radius);
+    check_shape(b);
     if (b.shape != Boundary::Shape::sphere && !(std::abs(b.axis.norm() - 1) < 1e-9))
         refuse("boundary", "the length of axis must be 1", b.axis.norm());
     if (!(b.mass >= 0) || !std::isfinite(b.mass))
@@ -317,6 +346,7 @@ void World::one_step()
         const double displacement = move_boundaries();
         boundary_displacement += displacement, path += displacement;
     };
+    place_parts();
     send_boundaries();
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {

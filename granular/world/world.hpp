@@ -154,6 +154,11 @@ public:
     /// whose orientation is Boundary::p. The particles are in front of the triangles: the normals point to
     /// them. With `two_sided` they may be on both sides. Throws io::InvalidInput.
     int add(const Boundary& boundary, const TriangleMesh& mesh, bool two_sided = false);
+    /// Attaches a boundary rigidly to another one, its body, at their present places: it moves with the body,
+    /// and its loads act on the body. The body may have a mass and any shape; it is not a part of another
+    /// one. The part has no mass, and its velocities are those of the body. To be called before the first
+    /// step. Throws io::InvalidInput.
+    void set_part(int part, int body);
     /// Adds a particle and returns its id. Throws io::InvalidInput.
     ///
     /// Ids count from 0 in the order of the calls. The id of a removed particle is not used again.
@@ -194,7 +199,7 @@ public:
     /// ordered by i, then by j. Throws ParticleLost if the neighbour list has to be rebuilt and a particle
     /// is outside the domain.
     std::vector<ContactRecord> contacts() const;
-    /// Resultant of the contact forces on a boundary and on the particles attached to it at t, about
+    /// Resultant of the contact forces on a boundary, its parts and the particles attached to it at t, about
     /// Boundary::r [N, N m]. With `replica` ≥ 0
     /// only the contacts of that replica are included.
     Wrench wrench(int boundary, int replica = -1) const { return wrench(contacts(), boundary, replica); }
@@ -206,8 +211,8 @@ public:
         /// Love-Weber stress over the volume of the domain, 3 × 3 by rows [Pa]; positive in compression. See
         /// stress() in output.hpp.
         std::array<double, 9> stress = {};
-        /// Resultants of the contact forces on each boundary and the particles attached to it, about its
-        /// Boundary::r [N, N m]
+        /// Resultants of the contact forces on each boundary, its parts and the particles attached to it,
+        /// about its Boundary::r [N, N m]
         std::vector<Wrench> on_boundary;
     };
     Totals totals() const;
@@ -388,6 +393,16 @@ private:
     [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();
+    double rotating_reach(std::size_t boundary) const;
+    struct BodyPart;
+    void place(const BodyPart& part);
+    void place_parts();
+    bool has_parts(std::size_t boundary) const
+    {
+        return std::any_of(parts.begin(), parts.end(), [&](const BodyPart& p) { return p.body == boundary; });
+    }
+    void add_part_loads(std::vector<Wrench>& loads) const;
+    BoundaryVelocity velocity_of_move(std::size_t boundary) const;
     void find_tool_loads();
     void accelerate_tools(double part);
     Vec3 mean_omega_of(std::size_t boundary) const;
@@ -414,8 +429,15 @@ private:
     std::vector<Boundary> boundaries;
     std::shared_ptr<Meshes> meshes = std::make_shared<Meshes>();  ///< of the boundaries with Shape::mesh
     std::vector<Wrench> tool_loads;  ///< contact loads on the boundaries with a mass, at t_n
-    std::vector<Float4> forces;      ///< applied forces, by id [N]; empty if none is set
-    std::vector<Particle> pending;   ///< particles added since the last insertion
+    /// A boundary that moves with another one, and its place in the body frame of that one; see set_part()
+    struct BodyPart {
+        std::uint32_t number, body;
+        Vec3 X, axis;               ///< Boundary::r relative to that of the body [m], Boundary::axis
+        EulerParameters<double> p;  ///< rotation from the frame of the part to that of the body
+    };
+    std::vector<BodyPart> parts;
+    std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
+    std::vector<Particle> pending;  ///< particles added since the last insertion
     struct Expected {
         std::vector<Particle> samples;
         std::size_t particles;

@@ -14,14 +14,18 @@ namespace hilda::granular {
 using namespace detail;
 
 /// Adds the force and the torque of a contact on its boundary, and on the boundaries to which its particles
-/// are attached, about Boundary::r.
+/// are attached, and on the bodies of which these are parts, about Boundary::r.
 void World::add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const
 {
     const auto add = [&](int number, double sign) {
         if (number < 0) return;
         const auto b = static_cast<std::size_t>(number);
-        to[b].F += sign * c.F;
-        to[b].T += sign * ((c.C - boundaries[b].r).cross(c.F) + c.T);
+        const auto add_to = [&](std::size_t on) {
+            to[on].F += sign * c.F;
+            to[on].T += sign * ((c.C - boundaries[on].r).cross(c.F) + c.T);
+        };
+        add_to(b);
+        if (boundaries[b].body >= 0) add_to(static_cast<std::size_t>(boundaries[b].body));
     };
     add(c.boundary ? static_cast<int>(c.j) : boundary_of(c.j), -1);
     if (!c.boundary) add(boundary_of(c.i), 1);

@@ -395,7 +395,7 @@ void World::check_laws(const std::vector<Particle>& added) const
     for (const Particle& one : added) include(one.material, one.replica);
     all = of_particles;
     for (const Boundary& b : boundaries) {
-        all[static_cast<std::size_t>(b.material)] = 1;
+        if (b.shape != Boundary::Shape::none) all[static_cast<std::size_t>(b.material)] = 1;
         if (b.mass > 0 && replica > 0)
             refuse("boundary",
                    "a boundary with a mass requires that all particles are in replica 0; largest replica",

@@ -12,7 +12,8 @@ using namespace detail;
 
 namespace {
 
-bool is_tool(const Boundary& b) { return b.mass > 0; }
+/// Whether the loads move the boundary: a part of a body moves with the body
+bool is_tool(const Boundary& b) { return b.mass > 0 && b.body < 0; }
 
 }  // namespace
 
@@ -20,7 +21,7 @@ bool is_tool(const Boundary& b) { return b.mass > 0; }
 void World::find_tool_loads()
 {
     if (std::any_of(boundaries.begin(), boundaries.end(), is_tool))
-        tool_loads = engine->free_boundary_wrenches(domain);
+        tool_loads = engine->free_boundary_wrenches(domain), add_part_loads(tool_loads);
     else
         tool_loads.clear();
 }
@@ -38,6 +39,7 @@ void World::accelerate_tools(double part)
         if (!is_tool(b)) continue;
         accelerate(b, tool_loads[k].F + b.F, tool_loads[k].T + b.T, options.gravity, part * options.h);
     }
+    place_parts();
 }
 
 /// mean_omega() with the number of the boundary and the time in the message
@@ -53,9 +55,49 @@ Vec3 World::mean_omega_of(std::size_t k) const
     }
 }
 
-/// Moves the boundaries by h v, and rotates meshes, tools and axes (by Rodrigues' formula) by h ω with the
-/// mean ω of the step. Returns an upper bound of the displacement of the boundary points within the domain
-/// [m].
+/// Velocity of a boundary in the move of the step: v, and the mean ω; of a part from those of its body
+BoundaryVelocity World::velocity_of_move(std::size_t k) const
+{
+    const Boundary& b = boundaries[k];
+    if (b.body < 0) return {b.v, mean_omega_of(k)};
+    const Boundary& body = boundaries[static_cast<std::size_t>(b.body)];
+    const Vec3 omega = mean_omega_of(static_cast<std::size_t>(b.body));
+    return {body.v + omega.cross(b.r - body.r), omega};
+}
+
+/// Distance from Boundary::r of the points that the rotation of the boundary moves and that count for the
+/// neighbour list: those of its surface within the domain, and the centres of particles in contact [m]
+double World::rotating_reach(std::size_t k) const
+{
+    const Boundary& b = boundaries[k];
+    const double more = double{domain.largest} + domain.skin;
+    switch (b.shape) {
+        case Boundary::Shape::mesh: {
+            const Meshes::Part* const mesh = meshes->part_of(static_cast<std::uint32_t>(k));
+            return mesh != nullptr ? mesh->radius + more : 0;
+        }
+        case Boundary::Shape::frustum:
+        case Boundary::Shape::disk:
+        case Boundary::Shape::torus:
+            return extent(b) + more;
+        case Boundary::Shape::sphere:
+        case Boundary::Shape::none:
+            return 0;
+        case Boundary::Shape::plane:
+        case Boundary::Shape::cylinder:
+        case Boundary::Shape::cone:
+            break;
+    }
+    // distance from r to the farthest corner of the domain
+    const Vec3 a = options.low - b.r, c = options.high - b.r;
+    return Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
+                std::max(std::abs(a.z), std::abs(c.z))}
+        .norm();
+}
+
+/// Moves the boundaries by h v, and rotates meshes, bodies and axes (by Rodrigues' formula) by h ω with the
+/// mean ω of the step; then the parts of bodies. Returns an upper bound of the displacement of the boundary
+/// points within the domain [m].
 double World::move_boundaries()
 {
     if (boundaries_rest && !boundaries_changed) return 0;
@@ -63,38 +105,38 @@ double World::move_boundaries()
     const double h = options.h;
     double largest = 0;
     moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
-    for (std::size_t k = 0; k < boundaries.size(); ++k) moved[k] = {boundaries[k].v, mean_omega_of(k)};
-    auto part = meshes->part.begin();
+    for (std::size_t k = 0; k < boundaries.size(); ++k) moved[k] = velocity_of_move(k);
     rotate_frames();
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];
         const Vec3 omega = moved[k].omega;
         boundaries_rest = boundaries_rest && b.v == Vec3{0, 0, 0} && omega == Vec3{0, 0, 0} && b.mass == 0;
+        if (b.body >= 0) continue;
         b.r += h * b.v;
         double displacement = h * b.v.norm();
         const double angle = h * omega.norm();
-        if (b.shape == Boundary::Shape::mesh || b.mass > 0) rotate(b, omega, h);
-        if (b.shape == Boundary::Shape::mesh) {
-            if (part != meshes->part.end() && part->boundary == k) {
-                // also of the centres of particles in contact
-                displacement += angle * (part->radius + double{domain.largest} + domain.skin);
-                ++part;
-            }
-        } else if (b.shape != Boundary::Shape::sphere && omega.cross(b.axis).norm() > 0) {
+        const bool has_axis = b.shape != Boundary::Shape::mesh && b.shape != Boundary::Shape::sphere &&
+                              b.shape != Boundary::Shape::none;
+        if (b.shape == Boundary::Shape::mesh || b.mass > 0 || has_parts(k)) rotate(b, omega, h);
+        if (!has_axis) {
+            displacement += angle * rotating_reach(k);
+        } else if (omega.cross(b.axis).norm() > 0) {
             const Vec3 e = (h / angle) * omega;
             const Vec3 direction = std::cos(angle) * b.axis + std::sin(angle) * e.cross(b.axis) +
                                    ((1 - std::cos(angle)) * e.dot(b.axis)) * e;
             b.axis = (1 / direction.norm()) * direction;
-            // distance from r to the farthest corner of the domain
-            const Vec3 a = options.low - b.r, c = options.high - b.r;
-            displacement +=
-                angle * Vec3{std::max(std::abs(a.x), std::abs(c.x)), std::max(std::abs(a.y), std::abs(c.y)),
-                             std::max(std::abs(a.z), std::abs(c.z))}
-                            .norm();
+            displacement += angle * rotating_reach(k);
         }
         largest = std::max(largest, displacement);
-        moved_to[k] = BoundaryPlace(b);
     }
+    for (const BodyPart& part : parts) {
+        place(part);
+        const Boundary& body = boundaries[part.body];
+        const double angle = h * moved[part.number].omega.norm();
+        largest =
+            std::max(largest, h * body.v.norm() + angle * (part.X.norm() + rotating_reach(part.number)));
+    }
+    for (std::size_t k = 0; k < boundaries.size(); ++k) moved_to[k] = BoundaryPlace(boundaries[k]);
     return largest;
 }
 

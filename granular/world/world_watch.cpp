@@ -61,9 +61,7 @@ bool World::boundaries_move()
     if (!moves) return false;
     next_move.resize(boundaries.size());
     for (std::size_t k = 0; k < boundaries.size(); ++k)
-        next_move[k] = options.scheme == Scheme::velocity_verlet
-                           ? moved[k]
-                           : BoundaryVelocity{boundaries[k].v, mean_omega_of(k)};
+        next_move[k] = options.scheme == Scheme::velocity_verlet ? moved[k] : velocity_of_move(k);
     return true;
 }
 

@@ -60,7 +60,12 @@ CASE = {
         {"name": "box", "type": "box", "low": [-1, -1, -1], "high": [1, 1, 1], "open": ["+z"], "r": [0, 0, 0.1],
          "v": [0, 0, "sin(2*pi*t)"], "material": "b"},
         {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": [0, 0, 0.8], "omega": [0, 0, 0], "mass": 2,
-         "inertia": 1e-3, "F": [0, 0, -1], "material": "b"}],
+         "inertia": 1e-3, "F": [0, 0, -1], "material": "b"},
+        {"name": "rod", "type": "frustum", "axis": [0, 0, 1], "radii": [0.05, 0.1], "length": 0.2, "r": [0.45, -0.55, 0], "density": 500,
+         "v": [0, 0, 1], "centre": 0.1, "material": "a"},
+        {"name": "tyre", "type": "torus", "axis": [0, 0, 1], "radius": 0.02, "ring_radius": 0.15, "r": [0.45, -0.55, 0.1],
+         "part_of": "rod", "material": "a"},
+        {"name": "plate", "type": "disk", "normal": [0, 0, 1], "radius": 0.1, "two_sided": True, "r": [0.45, -0.55, 0.5], "material": "b"}],
     "particles": [{"r": [0, 0, 0], "radius": 0.05, "material": "a", "v": [0, 0, 1], "omega": [1, 0, 0],
                    "force": [0, 1, 0], "replica": 0, "orientation": [0.6, 0, 0, -0.8]},
                   {"r": [0, 0.0995, 0], "radius": 0.05, "material": "a"}] +
@@ -78,7 +83,7 @@ CASE = {
 
 # Keys whose numbers must be positive in single precision
 POSITIVE = {"step", "end", "interval", "frame_interval", "skin", "density", "E", "k_n", "k_t", "k_1", "k_2", "alpha", "A",
-            "radius", "mass", "least_radius", "spacing", "rate"}
+            "radius", "ring_radius", "length", "density", "mass", "least_radius", "spacing", "rate"}
 OUTPUT = ("--contacts", "--replica-rows", "--quiet", "--threads", "1", "--output", "out")
 
 

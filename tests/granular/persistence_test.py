@@ -4,7 +4,7 @@
 
     persistence_test.py WHAT PROGRAM [PROGRAM]
 
-WHAT is kills, ends, longer or threads; a second PROGRAM has another back end.
+WHAT is kills, ends, longer, bodies or threads; a second PROGRAM has another back end.
 """
 import json
 import random
@@ -275,6 +275,45 @@ def longer(runs):
     print(f"ends at and between checkpoints, with and without frames; {kills} kills; {before}")
 
 
+def bodies(runs):
+    """A tool of several parts and finite surfaces: any number of threads, and a run that is killed and resumed"""
+    part = {"material": "steel", "density": 3000, "part_of": "bell"}
+    can = {"name": "can", "type": "cylinder", "r": [0.01, 0.01, 0], "axis": [0, 0, 1], "radius": 0.01, "length": 0.06, "inside": True,
+           "open": ["+"], "omega": [0, 0, "5*t"], "material": "steel"}
+    bell = [{"name": "left", "type": "sphere", "radius": 2e-3, "r": [0.007, 0.01, 0.036], **part},
+            {"name": "bell", "type": "body", "from_parts": True, "omega": [0, 20, 0], "material": "steel"},
+            {"name": "rod", "type": "cylinder", "axis": [1, 0, 0], "radius": 1e-3, "length": 6e-3, "r": [0.007, 0.01, 0.036], **part},
+            {"name": "ring", "type": "torus", "axis": [1, 0, 0], "radius": 1e-3, "ring_radius": 2e-3, "r": [0.013, 0.01, 0.036], **part}]
+    case = runs.case("bell", boundaries=[can, *bell], end=0.12)
+    runs.finish(case, "--output", "whole")
+    whole = runs.sha("whole")
+    header, *rows = (line.split(",") for line in (runs.folder / "whole" / "run.csv").read_text().splitlines())
+    last = dict(zip(header, map(float, rows[-1])))
+    expect(any(float(row[header.index("ring_Fz")]) != 0 for row in rows), "grains load the parts")
+    for of, names in (("bell", ("left", "rod", "ring")), ("can", ("can-",))):
+        rest = last[f"{of}_Fz"] - sum(last[f"{name}_Fz"] for name in names)
+        expect(of == "can" or abs(rest) < 1e-8, f"the load on {of} is that of its parts: {rest}")
+    for count in (2, 3, 8):
+        runs.finish(case, "--output", "out", "--force", "--threads", str(count))
+        expect(runs.sha("out") == whole, f"{count} threads give the same files")
+    draw = random.Random(5)
+    kills = 0
+    runs.remove("out")
+    while True:
+        process = runs.start(case, "--output", "out", "--checkpoint", "0.02", "--resume")
+        try:
+            process.communicate(timeout=draw.uniform(0, 0.3) * (1 + kills / 10))  # longer on a busy machine
+            expect(process.returncode == 0, "the run ends with 0")
+            break
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+            kills += 1
+            expect(kills < 200, "the run comes to its end")
+    expect(kills > 0 and runs.sha("out") == whole, f"a run that was killed {kills} times gives the same files")
+    print(f"1, 2, 3, 8 threads and {kills} kills; {whole}")
+
+
 def threads(runs, others):
     """Different numbers of threads and back ends, with enough particles to distribute the loops"""
     cup = dict(CASE["boundaries"][1], r=[0.02, 0.02, 0], radius=0.03)
@@ -306,6 +345,8 @@ def main():
             ends(runs)
         elif what == "longer":
             longer(runs)
+        elif what == "bodies":
+            bodies(runs)
         else:
             threads(runs, others)
 

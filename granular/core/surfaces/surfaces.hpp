@@ -45,7 +45,7 @@ struct Surfaces {
     /// `skin` in any direction.
     HILDA_HD bool is_near(std::uint32_t k, const Vec3& point, double radius, double skin) const
     {
-        if (!is_triangle(k)) return granular::nearest(boundary[k], point).distance < radius + skin;
+        if (!is_triangle(k)) return distance_bound(boundary[k], point) < radius + skin;
         const std::uint32_t t = k - first_triangle;
         const Boundary& b = boundary[mesh.triangle[t].boundary];
         const Vec3 p = rotated_back(b.p, point - b.r);

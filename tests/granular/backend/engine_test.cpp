@@ -28,8 +28,8 @@ struct ScalarBackend : granular::par::Cpu {};
 
 Material steel() { return {"steel", 7800, 2e8, 0.3}; }
 
-/// Two materials with laws of all types, in a box that is periodic along x, with a falling plate and a
-/// rotating drum
+/// Two materials with laws of all types, in a box that is periodic along x, with a falling plate, to which a
+/// torus is fixed, and a rotating drum with a post
 std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
 {
     WorldOptions o;
@@ -58,6 +58,12 @@ std::string run(std::unique_ptr<Engine> engine, Scheme scheme)
     Boundary plate;
     plate.axis = {0, 0, -1}, plate.r = {0, 0, 8 * R}, plate.mass = 1e-3, plate.material = 1;
     world.add(plate);
+    Boundary post = granular::frustum({6 * R, 0, -6.4 * R}, {0, 0, 1}, 2 * R, 2 * R, R), ring;
+    post.material = 1;
+    ring.shape = Boundary::Shape::torus, ring.r = {6 * R, 0, 7.2 * R}, ring.radius = 0.7 * R;
+    ring.second_radius = 2 * R, ring.material = 1;
+    world.add(post), world.add(ring);
+    world.set_part(2, 0), world.set_part(3, 1);
     std::mt19937 random(11);
     std::uniform_real_distribution<double> in(-1, 1);
     for (int k = 0; k < 75; ++k) {

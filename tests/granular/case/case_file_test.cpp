@@ -239,7 +239,8 @@ TEST_CASE("errors in a case are reported with their place and value", "[granular
         {"/laws/0/tangential/mu", 1, "/laws/0/tangential/mu: unknown key \"mu\""},
         {"/laws/1/normal/k_n", -1, "/laws/1/normal/k_n: k_n must be positive, got -1"},
         {"/boundaries/0/type", "wall",
-         "/boundaries/0/type: unknown type \"wall\"; allowed: box, cone, cylinder, mesh, plane, sphere"},
+         "/boundaries/0/type: unknown type \"wall\"; allowed: body, box, cone, cylinder, disk, frustum, "
+         "mesh, plane, sphere, torus"},
         {"/boundaries/0/normal",
          {0, 0, 0},
          "/boundaries/0/normal: normal must have a direction, got [0, 0, 0]"},

@@ -28,6 +28,12 @@ Boundary random_boundary(granular::Random& random, Boundary::Shape shape)
     b.axis = random.direction(), b.radius = random.number(0.01, 0.7);
     const double angle = random.number(0.1, 1.4);
     b.cosine = std::cos(angle), b.sine = std::sin(angle);
+    if (shape == Boundary::Shape::frustum) {
+        const Boundary of =
+            granular::frustum(b.r, b.axis, random.number(0.05, 0.5), b.radius, 0.5 * b.radius);
+        b.to = of.to, b.second_radius = of.second_radius, b.cosine = of.cosine, b.sine = of.sine;
+    }
+    b.second_radius = shape == Boundary::Shape::torus ? 2 * b.radius : b.second_radius;
     return b;
 }
 
@@ -75,7 +81,8 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
     granular::Random random(5);
     std::vector<Boundary> all;
     for (const auto shape :
-         {Boundary::Shape::plane, Boundary::Shape::cylinder, Boundary::Shape::cone, Boundary::Shape::sphere})
+         {Boundary::Shape::plane, Boundary::Shape::cylinder, Boundary::Shape::cone, Boundary::Shape::sphere,
+          Boundary::Shape::frustum, Boundary::Shape::disk, Boundary::Shape::torus})
         for (int k = 0; k < 20; ++k) all.push_back(random_boundary(random, shape));
     BoundaryBlocks blocks;
     REQUIRE(blocks.update(g, reach, all, {}));
@@ -85,7 +92,7 @@ TEST_CASE("the blocks of cells list all boundaries within reach and few others",
     for (int n = 0; n < 4000; ++n) {
         const auto [point, near_cell] = random_place(random, g, width, view);
         for (std::uint32_t b = 0; b < all.size(); ++b) {
-            const double distance = nearest(all[b], point).distance;
+            const double distance = distance_bound(all[b], point);
             const bool is_listed = contains(near_cell, b);
             listed += is_listed;
             missing += distance < reach && !is_listed;

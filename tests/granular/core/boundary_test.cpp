@@ -72,8 +72,7 @@ Vec3 surface(const Boundary& b, double s, double t)
             return b.r + b.radius * radial + 4 * t * b.axis;
         case Boundary::Shape::cone:  // along a generator, from the apex on
             return b.r + 2 * (1 + t) * (b.sine * radial + b.cosine * b.axis);
-        case Boundary::Shape::mesh:
-        case Boundary::Shape::sphere:
+        default:  // a sphere
             break;
     }
     return b.r + b.radius * (std::cos(pi / 2 * t) * radial + std::sin(pi / 2 * t) * b.axis);
@@ -116,8 +115,7 @@ bool on_the_side_of_particles(const Boundary& b, const Vec3& at)
             return (far < b.radius) == (b.inside != 0);
         case Boundary::Shape::cone:
             return (std::atan2(far, along) < std::atan2(b.sine, b.cosine)) == (b.inside != 0);
-        case Boundary::Shape::mesh:
-        case Boundary::Shape::sphere:
+        default:  // a sphere
             break;
     }
     return (d.norm() < b.radius) == (b.inside != 0);

@@ -22,6 +22,12 @@ Vec3 area(const Polygons& p, const std::vector<int>& polygon)
     return sum;
 }
 
+Boundary frustum_with(Boundary b, bool inside)
+{
+    b.inside = inside ? 1 : 0;
+    return b;
+}
+
 }  // namespace
 
 TEST_CASE("the polygons of a boundary lie on it and face the particles", "[granular][vtk]")
@@ -32,14 +38,23 @@ TEST_CASE("the polygons of a boundary lie on it and face the particles", "[granu
         {.shape = Shape::plane, .r = {0.1, 0.2, 0.3}, .axis = tilted},
         {.shape = Shape::cylinder, .inside = inside, .r = {0.1, 0.2, 0.3}, .axis = tilted, .radius = 0.7},
         {.shape = Shape::cone, .inside = inside, .r = {0, 0, 1}, .axis = tilted, .cosine = 0.8, .sine = 0.6},
-        {.shape = Shape::sphere, .inside = inside, .r = {0.1, 0.2, 0.3}, .radius = 0.5}};
+        {.shape = Shape::sphere, .inside = inside, .r = {0.1, 0.2, 0.3}, .radius = 0.5},
+        frustum_with(frustum({0.1, 0.2, 0.3}, tilted, 0.6, 0.5, 0.2), inside),
+        frustum_with(frustum({0.1, 0.2, 0.3}, tilted, 0.6, 0, 0.4), inside),
+        {.shape = Shape::disk, .r = {0.1, 0.2, 0.3}, .axis = tilted, .radius = 0.5},
+        {.shape = Shape::torus,
+         .inside = inside,
+         .r = {0, 0, 1},
+         .axis = tilted,
+         .radius = 0.2,
+         .second_radius = 0.6}};
     for (const Boundary& b : all) {
         CAPTURE(static_cast<int>(b.shape), inside);
         const Polygons drawn = drawing(b, low, high);
         REQUIRE(!drawn.polygon.empty());
         for (const Vec3& p : drawn.point)
             if ((p - b.r).norm() > 1e-9 || b.shape != Shape::cone)
-                CHECK(std::abs(nearest(b, p).distance) < 1e-12);
+                CHECK(std::abs(distance_bound(b, p)) < 1e-12);
         for (const std::vector<int>& polygon : drawn.polygon) {
             Vec3 middle = {0, 0, 0};
             for (const int k : polygon) middle += (1. / static_cast<double>(polygon.size())) * drawn.point[k];

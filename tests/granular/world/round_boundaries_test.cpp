@@ -62,8 +62,7 @@ Vec3 in_contact(const Boundary& b, double delta)
         case Shape::cone:
             return b.r + (rho / b.sine) * (b.sine * e + b.cosine * b.axis) +
                    sign * far * (b.cosine * e - b.sine * b.axis);
-        case Shape::mesh:
-        case Shape::sphere:
+        default:  // a sphere
             break;
     }
     return b.r + (b.radius + sign * far) * (0.6 * e - 0.8 * f);

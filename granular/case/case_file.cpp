@@ -3,6 +3,7 @@
 
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/continued_case.hpp"
+#include "granular/case/falling_tools.hpp"
 #include "granular/case/fill.hpp"
 #include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
@@ -160,6 +161,9 @@ public:
             if (!fills[k].file.empty()) out.tables[fill_places[k].pointer()] = fills[k].file;
             std::vector<Particle>().swap(fills[k].particles);
         }
+        if (out.insertions == nullptr)
+            for (const FallingTool& tool : falling_tools(*out.world, out.boundaries, world.gravity))
+                out.notices.push_back(place_of(tool.boundary) + ": " + tool.text);
         start_motions();
         if (out.insertions != nullptr) out.insertions->start(*out.world, out.end);
     }
@@ -290,6 +294,9 @@ private:
         o.finish();
     }
 
+    /// The place of the entry of boundary number k
+    std::string place_of(int k) const { return bounds[static_cast<std::size_t>(k)].second.place(); }
+
     /// The boundary with this name, or nullptr
     const NamedBoundary* find(const std::string& name) const
     {
@@ -348,6 +355,7 @@ private:
         for (const auto& [n, o] : bounds)
             if (!n.part_of.empty())
                 o.located([&] { out.world->set_part(n.motion.boundary, find(n.part_of)->motion.boundary); });
+        out.world->set_boundary_names(out.boundaries);
     }
 
     /// The number of the boundary that the key attached_to names, or -1

@@ -144,10 +144,11 @@ private:
                 w.step();
                 particle_steps += static_cast<double>(w.count());
                 if (w.watch().warnings != known_warnings)
-                    report_watch(w.watch(), known_warnings, o.strict, [&](const std::string& text) {
-                        line.clear();
-                        warn(io::formatted("t = %.9g s: ", w.t()) + text);
-                    });
+                    report_watch(w.watch(), known_warnings, o.strict, c.boundaries,
+                                 [&](const std::string& text) {
+                                     line.clear();
+                                     warn(io::formatted("t = %.9g s: ", w.t()) + text);
+                                 });
                 record();
                 if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) {
                     check_state();

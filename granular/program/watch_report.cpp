@@ -43,12 +43,13 @@ io::Json watch_summary(const WatchRecord& w)
 }
 
 void report_watch(const WatchRecord& record, std::int64_t& known, bool strict,
+                  const std::vector<std::string>& boundaries,
                   const std::function<void(const std::string&)>& warn)
 {
     for (const auto& [which, status] : watch_warnings) {
         if ((record.warnings & ~known & which) == 0) continue;
         known |= which;
-        const std::string text = watch_warning(record, which);
+        const std::string text = watch_warning(record, which, boundaries);
         if (strict) throw StrictWarning(status, text + strict_suffix);
         warn(text);
     }

@@ -22,8 +22,9 @@ constexpr const char* strict_suffix = " (a warning, with --strict)";  ///< of th
 io::Json watch_summary(const WatchRecord& record);
 
 /// Calls warn(text) for each warning of the record that is not in `known`, and adds it there. With `strict`,
-/// throws StrictWarning instead.
+/// throws StrictWarning instead. `boundaries`: their names
 void report_watch(const WatchRecord& record, std::int64_t& known, bool strict,
+                  const std::vector<std::string>& boundaries,
                   const std::function<void(const std::string&)>& warn);
 
 }  // namespace hilda::granular

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace hilda::granular {
 
@@ -22,6 +23,13 @@ public:
 class EnergyCreated : public io::NumericalFailure {
 public:
     explicit EnergyCreated(const std::string& what) : NumericalFailure("energy_created", what) {}
+};
+
+/// A rigid body boundary has left the domain to the side to which gravity pulls it. No particle can stop it,
+/// and boundaries do not touch each other.
+class ToolLeft : public io::NumericalFailure {
+public:
+    explicit ToolLeft(const std::string& what) : NumericalFailure("tool_left", what) {}
 };
 
 /// Limits of the watch
@@ -76,10 +84,18 @@ struct WatchRecord {
     double largest_displacement = 0;  ///< of a particle in a step, over its radius
     double largest_speed = 0;         ///< [m/s]
 
-    enum Warning : std::int64_t { deep = 1, fast = 2 };
+    // the first tool that has left the domain
+    double left_tool = 0;         ///< number of the boundary
+    double left_time = 0;         ///< [s]
+    Vec3 left_place = {0, 0, 0};  ///< of its centre of mass [m]
 
-    /// The value that is above the limit of a warning
-    double extreme(Warning of) const { return of == deep ? largest_overlap : largest_displacement; }
+    enum Warning : std::int64_t { deep = 1, fast = 2, left = 4 };
+
+    /// The value that is above the limit of a warning; of `left` the time
+    double extreme(Warning of) const
+    {
+        return of == deep ? largest_overlap : of == fast ? largest_displacement : left_time;
+    }
     /// Adds the warnings and the extremes of overlap and displacement of another record.
     void include(const WatchRecord& other);
 };
@@ -90,9 +106,11 @@ struct NamedWarning {
     const char* name;
 };
 constexpr NamedWarning watch_warnings[] = {{WatchRecord::deep, "overlap_large"},
-                                           {WatchRecord::fast, "step_coarse"}};
+                                           {WatchRecord::fast, "step_coarse"},
+                                           {WatchRecord::left, "tool_left"}};
 
-/// Text of a warning in one line, without the prefix "warning"
-std::string watch_warning(const WatchRecord& record, WatchRecord::Warning which);
+/// Text of a warning in one line, without the prefix "warning". `boundaries`: their names, if they have any
+std::string watch_warning(const WatchRecord& record, WatchRecord::Warning which,
+                          const std::vector<std::string>& boundaries = {});
 
 }  // namespace hilda::granular

@@ -237,6 +237,8 @@ public:
     Boundary& boundary(int number) { return boundaries[number]; }
     const std::vector<Boundary>& all_boundaries() const { return boundaries; }
     const Meshes& all_meshes() const { return *meshes; }
+    /// Names of the boundaries in messages about tools; without them they have their numbers.
+    void set_boundary_names(std::vector<std::string> names) { boundary_names = std::move(names); }
     /// Lower and upper corner of the domain [m]
     const Vec3& low() const { return options.low; }
     const Vec3& high() const { return options.high; }
@@ -418,6 +420,7 @@ private:
     void start_balance() { record.is_balanced = 0; }
     double gain_tolerance() const;
     void check_watch();
+    void check_tools();
     [[noreturn]] void throw_overlap() const;
     void check_histories() const;
     [[noreturn]] void throw_lost(std::uint32_t k, const std::string& how) const;
@@ -436,6 +439,7 @@ private:
         EulerParameters<double> p;  ///< rotation from the frame of the part to that of the body
     };
     std::vector<BodyPart> parts;
+    std::vector<std::string> boundary_names;
     std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;  ///< particles added since the last insertion
     struct Expected {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 namespace hilda::granular {
@@ -13,13 +14,32 @@ using namespace detail;
 
 void WatchRecord::include(const WatchRecord& other)
 {
+    if ((warnings & left) == 0)
+        left_tool = other.left_tool, left_time = other.left_time, left_place = other.left_place;
     samples += other.samples, warnings |= other.warnings;
     largest_overlap = std::max(largest_overlap, other.largest_overlap);
     largest_displacement = std::max(largest_displacement, other.largest_displacement);
 }
 
-std::string watch_warning(const WatchRecord& w, WatchRecord::Warning which)
+namespace {
+
+/// Text about a tool that has left the domain at this place
+std::string left_text(std::size_t number, const Vec3& r, const std::vector<std::string>& names)
 {
+    const std::string name =
+        "boundary " + (number < names.size() ? '\'' + names[number] + '\'' : std::to_string(number));
+    return name + io::formatted(" has left the domain at (%.6g, %.6g, %.6g) m", r.x, r.y, r.z) +
+           ": boundaries do not touch each other, and only particles can hold it";
+}
+
+}  // namespace
+
+std::string watch_warning(const WatchRecord& w, WatchRecord::Warning which,
+                          const std::vector<std::string>& boundaries)
+{
+    if (which == WatchRecord::left)
+        return left_text(static_cast<std::size_t>(w.left_tool), w.left_place, boundaries) +
+               io::formatted(", at t = %.9g s", w.left_time);
     if (which == WatchRecord::deep)
         return io::formatted(
             "an overlap of %.3g of the smaller radius is above %g: the contact laws hold for small overlaps; "
@@ -197,10 +217,47 @@ void World::throw_overlap() const
     throw OverlapTooLarge(what);
 }
 
-/// Sets the warnings. Throws OverlapTooLarge and EnergyCreated.
+namespace {
+
+/// Whether the surface of a tool changes with a displacement along the axis k: a plane or a cylinder may
+/// slide in itself.
+bool is_placed_along(const Boundary& b, std::size_t k)
+{
+    const double along = std::abs(k == 0 ? b.axis.x : k == 1 ? b.axis.y : b.axis.z);
+    if (b.shape == Boundary::Shape::plane) return along > 1e-9;
+    return b.shape != Boundary::Shape::cylinder || along < 1 - 1e-9;
+}
+
+}  // namespace
+
+/// Finds tools whose centre has left the domain in the last step, along an axis that is free and not
+/// periodic. Throws ToolLeft if gravity pulls the tool farther away; otherwise there is a warning.
+void World::check_tools()
+{
+    for (std::size_t k = 0; k < boundaries.size(); ++k) {
+        const Boundary& b = boundaries[k];
+        if (!(b.mass > 0) || b.body >= 0) continue;
+        const Vec3 before = b.r - options.h * moved[k].v, &low = options.low, &high = options.high;
+        for (const auto& [axis, was, is, from, to, g] :
+             {std::tuple{0u, before.x, b.r.x, low.x, high.x, options.gravity.x},
+              {1u, before.y, b.r.y, low.y, high.y, options.gravity.y},
+              {2u, before.z, b.r.z, low.z, high.z, options.gravity.z}}) {
+            if (options.periodic[axis] || !b.free[axis] || !is_placed_along(b, axis)) continue;
+            if (!(was >= from && was <= to) || (is >= from && is <= to)) continue;
+            if (is > to ? g > 0 : g < 0)
+                throw ToolLeft(left_text(k, b.r, boundary_names) + io::formatted(", at t = %.9g s", time));
+            if ((record.warnings & WatchRecord::left) == 0)
+                record.left_tool = static_cast<double>(k), record.left_time = time, record.left_place = b.r;
+            record.warnings |= WatchRecord::left;
+        }
+    }
+}
+
+/// Sets the warnings. Throws OverlapTooLarge, EnergyCreated and ToolLeft.
 void World::check_watch()
 {
     WatchRecord& w = record;
+    if (!tool_loads.empty()) check_tools();
     if (w.largest_overlap > watch_limit::overlap) w.warnings |= WatchRecord::deep;
     if (w.largest_displacement > watch_limit::displacement) w.warnings |= WatchRecord::fast;
     if (w.largest_overlap > watch_limit::largest_overlap) throw_overlap();

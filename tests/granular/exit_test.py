@@ -93,6 +93,18 @@ def failures(runs):
         summary = json.loads((runs.folder / "out" / name / "summary.json").read_text())
         expect(summary["status"] == "particle_lost" and "velocity" in summary["message"], f"{summary}")
 
+    tool = {"name": "shoe", "type": "sphere", "radius": 1e-3, "r": [0.01, 0.01, 0.05], "mass": 1e-3, "material": "steel"}
+    falls = runs.case("falls", boundaries=[CASE["boundaries"][0], tool], fill=[], particles=[dict(one, r=[0.01, 0.018, 0.001])])
+    left = r"boundary 'shoe' has left the domain at \(0.01, 0.01, -0.002\d*\) m: boundaries do not touch each other, .*, at t = 0.10\d* s"
+    runs.refused(falls, 4, left)
+    summary = json.loads((runs.folder / "out" / falls / "summary.json").read_text())
+    expect(summary["status"] == "tool_left" and "(/boundaries/1): nothing holds boundary 'shoe' above 'floor'" in summary["case"]["warnings"][0],
+           f"{summary}")
+    rises = runs.case("rises", boundaries=[CASE["boundaries"][0], dict(tool, v=[0, 0, 2], F=[0, 0, 0.1])], fill=[], end=0.05,
+                      particles=[dict(one, r=[0.01, 0.018, 0.001])])
+    expect("warning: t = 0.01" in (err := runs.finish(rises, "--output", "rises")) and "boundary 'shoe' has left the domain" in err, err)
+    runs.refused(rises, 4, "boundary 'shoe' has left the domain .*(a warning, with --strict)", "--strict")
+
     floor = {"name": "floor", "type": "plane", "normal": [0, 0, 1], "v": [0, 0, "sqrt(1e-4-t)"], "material": "steel"}
     runs.refused(runs.case("sinks", boundaries=[floor]), 4, r"boundary 'floor': v is not finite at t = 0.0001\d* s")
 

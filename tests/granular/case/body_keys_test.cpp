@@ -182,3 +182,18 @@ TEST_CASE("errors of finite boundaries and parts name the key", "[granular][case
     check_error(sum + "}", "from_parts needs parts with part_of");
     check_error(sum + "}, " + part + "}", "needs a density of its solid");
 }
+
+TEST_CASE("a tool that nothing holds above a plane gives a warning at the start", "[granular][case][tool]")
+{
+    const std::string all = R"({"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+                               {"name": "ball", "type": "sphere", "radius": 0.05, "r": [0, 0, 0.5], "mass": 1)";
+    const auto notices = [](const granular::Case& c) { return c.notices; };
+    const std::string on_floor = R"([{"r": [0.02, 0, 0.01], "radius": 0.01}])",
+                      beside = R"([{"r": [0.3, 0, 0.01], "radius": 0.01}])";
+    const auto alone = notices(read(all + "}", beside));
+    REQUIRE(alone.size() == 1);
+    CHECK_THAT(alone[0], Catch::Contains("(/boundaries/1): nothing holds boundary 'ball' above 'floor'"));
+    CHECK(notices(read(all + "}", on_floor)).empty());
+    CHECK(notices(read(all + R"(, "free": [true, true, false]})", beside)).empty());
+    CHECK(notices(read(all + R"(, "F": [0, 0, 10]})", beside)).empty());
+}

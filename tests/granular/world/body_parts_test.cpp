@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rigid bodies of several boundaries: motion of the parts, their loads, momentum.
+// Rigid bodies of several boundaries: motion of the parts, their loads, momentum; tools that leave the
+// domain.
 #include "granular/core/rigid_body.hpp"
 
 #include "granular/mesh/mesh_shapes.hpp"
@@ -232,4 +233,46 @@ TEST_CASE("a part that cannot be one is refused", "[granular][tool]")
     CHECK_THROWS_WITH(world.set_part(b, c), Catch::Contains("has parts itself"));
     world.step(1);
     CHECK_THROWS_WITH(world.set_part(c, b), Catch::Contains("before the first step"));
+}
+
+TEST_CASE("a tool that falls out of the domain ends the run, one that leaves it elsewhere gives a warning",
+          "[granular][tool]")
+{
+    const auto [gravity, v] =
+        GENERATE(table<Vec3, Vec3>({{{0, 0, -9.81}, {0, 0, 0}}, {{0, 0, 0}, {0, 0, 1}}}));
+    WorldOptions o = room(1e-4);
+    o.gravity = gravity;
+    World world = glass_world(o);
+    Boundary tool = ball({0.001, 0.002, 0}, 1e-3);
+    tool.mass = 1, tool.v = v;
+    world.add(Boundary{.r = {0, 0, -0.01}});
+    world.add(tool);
+    world.add(Particle{.r = {0.01, 0.01, -0.009}, .radius = 1e-3});
+    world.set_boundary_names({"floor", "shoe"});
+    if (v.z > 0) {
+        world.step(300);
+        CHECK(world.watch().warnings == granular::WatchRecord::left);
+        CHECK_THAT(watch_warning(world.watch(), granular::WatchRecord::left, {"floor", "shoe"}),
+                   Catch::Contains("boundary 'shoe' has left the domain at (0.001, 0.002, 0.02") &&
+                       Catch::Contains("at t = 0.02"));
+        return;
+    }
+    // z = -g t²/2 is below -0.02 m after 0.0639 s
+    CHECK_THROWS_WITH(world.step(1000),
+                      Catch::Contains("boundary 'shoe' has left the domain at (0.001, 0.002, -0.02") &&
+                          Catch::Contains("at t = 0.063"));
+}
+
+TEST_CASE("a tool may start outside of the domain, and a plane may slide in itself", "[granular][tool]")
+{
+    WorldOptions o = room(1e-4);
+    World world = glass_world(o);
+    Boundary tool = ball({0, 0, 0.03}, 1e-3), plate;
+    tool.mass = 1, tool.v = {0, 0, 0.1};
+    plate.mass = 1, plate.r = {0.0199, 0, -0.01}, plate.v = {1, 0, 0};
+    world.add(tool), world.add(plate);
+    world.add(Particle{.r = {0, 0, 0}, .radius = 1e-3});
+    world.step(100);
+    CHECK(world.boundary(1).r.x > 0.02);
+    CHECK(world.watch().warnings == 0);
 }

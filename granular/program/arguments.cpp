@@ -67,10 +67,17 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     };
     app.add_option(
            "CASE", o.file,
-           "case file (JSON), name of a validation, laws to list the force laws, or schema to print the "
-           "JSON schema of cases")
+           "case file (JSON), name of a built-in case or of a validation, cases to list the built-in cases "
+           "or "
+           "to write them as files, laws to list the force laws, or schema to print the JSON schema of cases")
         ->required()
         ->type_name("");
+    app.add_option("NAME", o.name, "after cases: the built-in case that is written; default: print the list")
+        ->type_name("");
+    value("--write", "PATH",
+          "after cases: write the case to this file or folder, or without NAME all cases to this folder; "
+          "default: stdout",
+          assign(o.write_to, io::path));
     value("--step", "H", "time step [s]; default: that of the case", positive(step));
     value("--end", "T", "end time [s]; default: that of the case", positive(end));
     value("--interval", "DT", "time between rows of run.csv [s]; default: that of the case, or end/1000",
@@ -131,6 +138,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     try {
         app.parse(argc, argv);
         refuse_extras(app);
+        if (o.file != "cases") {
+            if (!o.name.empty()) throw io::UsageError("one argument too many: '" + o.name + "'");
+            if (!o.write_to.empty()) throw io::UsageError("--write: is valid after cases only");
+        }
         if (o.force && o.resume) throw io::UsageError("--force and --resume exclude each other");
         if (!every.empty() && !interval.empty())
             throw io::UsageError("--every is the old name of --interval; give only one of them");
@@ -153,8 +164,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         interval = every;  // the origin in messages is then --interval
         if (!o.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
-    const std::set<std::string> of_all = {"CASE",     "--threads", "--device", "--full",
-                                          "--strict", "--quiet",   "--verbose"};
+    const std::set<std::string> of_all = {"CASE",   "NAME",     "--write", "--threads", "--device",
+                                          "--full", "--strict", "--quiet", "--verbose"};
     for (const CLI::Option* option : app.get_options())
         if (option->count() > 0 && !of_all.contains(option->get_name()) && o.case_only_option.empty())
             o.case_only_option = option->get_name();

@@ -10,6 +10,7 @@ namespace hilda::granular {
 
 struct Options {
     std::string file, output, device_name = "cpu", command_line;
+    std::string name, write_to;  ///< of the command cases: a built-in case, and where it is written
     Device device = {};
     io::SinkOptions outputs;  ///< options of the output formats, such as --no-vtk
     double checkpoint = 600;  ///< wall time between checkpoints [s]; 0: only after an interruption

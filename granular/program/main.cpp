@@ -2,7 +2,9 @@
 /// The program hilda-granular: runs a granular case or a validation, or prints the schema of cases. It is
 /// separate from hilda because it may link the CUDA runtime, which must not be linked with GSL.
 
+#include "granular/case/built_in_cases.hpp"
 #include "granular/case/case_schema.hpp"
+#include "granular/program/cases.hpp"
 #include "granular/program/earlier_run.hpp"
 #include "granular/program/laws.hpp"
 #include "granular/program/memory.hpp"
@@ -43,6 +45,43 @@ std::string folder_of(const std::string& file)
     return path.parent_path().string();
 }
 
+/// The built-in case that a word names: a file of this name has precedence. Throws io::UsageError if the name
+/// is that of a validation as well.
+const BuiltInCase* built_in_case(const std::string& word)
+{
+    const BuiltInCase* const found = is_file(word) ? nullptr : find_built_in_case(word);
+    if (found != nullptr && find_validation(word) != nullptr)
+        throw io::UsageError("granular: '" + word +
+                             "' is the name of a validation and of a built-in case; write the case to a file "
+                             "(hilda-granular cases " +
+                             word + " --write FILE) and run the file");
+    return found;
+}
+
+/// Text of a case file or of a built-in case. Throws io::InvalidInput.
+std::string text_of_case(const std::string& word)
+{
+    if (const BuiltInCase* const found = built_in_case(word)) return found->text;
+    try {
+        return io::read_file(word, io::JsonSource::max_bytes);
+    } catch (const io::IoError& e) {
+        throw io::InvalidInput(e.what() + (is_file(word) ? "" : known_names(word)));
+    }
+}
+
+/// The commands that print a text: cases, laws and schema
+void print_text(const Options& o)
+{
+    if (o.file == "cases" && (!o.name.empty() || !o.write_to.empty()))
+        write_cases(o.name, o.write_to);
+    else if (o.file == "cases")
+        std::puts(list_of_cases().c_str());
+    else if (o.file == "laws")
+        std::puts(list_of_laws().c_str());
+    else
+        std::puts(io::written(case_schema()).c_str());
+}
+
 int run_case(const Options& o)
 {
     Environment here{.memory = available_memory(),
@@ -53,12 +92,7 @@ int run_case(const Options& o)
     make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     if (!o.allow_paths) here.folder = folder_of(o.file);
-    std::string text;
-    try {
-        text = io::read_file(o.file, std::size_t{64} << 20);
-    } catch (const io::IoError& e) {
-        throw io::InvalidInput(e.what() + (is_file(o.file) ? "" : known_validations()));
-    }
+    const std::string text = text_of_case(o.file);
     const std::optional<io::JsonSource> earlier =
         o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
     if (earlier) here.continues = &*earlier;
@@ -71,15 +105,16 @@ int run_program(int argc, char** argv)
     Options o;
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
+    built_in_case(o.file);
     const Validation* const validation = find_validation(o.file);
-    const bool command = (o.file == "schema" || o.file == "laws") && !is_file(o.file);
+    const bool command = (o.file == "schema" || o.file == "laws" || o.file == "cases") && !is_file(o.file);
     if ((validation != nullptr || command) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
                              (command ? " is a command" : " is a validation"));
     if (o.full && validation == nullptr && is_file(o.file))
         throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
     if (command) {
-        std::puts((o.file == "laws" ? list_of_laws() : io::written(case_schema())).c_str());
+        print_text(o);
         return io::exit_code::done;
     }
     try {

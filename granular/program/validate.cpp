@@ -57,14 +57,6 @@ const Validation* find_validation(const std::string& name)
     return io::Registry<Validation>::find(name);
 }
 
-std::string known_validations()
-{
-    std::string all;
-    for (const std::string& name : io::Registry<Validation>::names())
-        all += (all.empty() ? "; validations: " : ", ") + name;
-    return all;
-}
-
 int validate(const Validation& v, ValidationOptions options, bool quiet, bool strict)
 {
     io::ProgressLine line(quiet);

@@ -10,9 +10,6 @@ namespace hilda::granular {
 /// The validation with this name; nullptr if there is none or if a file with this name exists
 const Validation* find_validation(const std::string& name);
 
-/// "; validations: A, B", a suffix for the message that a file does not exist
-std::string known_validations();
-
 /// Runs the validation, prints its tables and checks on stdout and returns the exit code. The warnings of the
 /// watch go to stderr; with `strict` they are a failure. Throws DeviceError.
 int validate(const Validation& validation, ValidationOptions options, bool quiet, bool strict);

@@ -189,7 +189,7 @@ bool CheckpointFiles::load(
 {
     constexpr std::size_t most = std::size_t{1} << 40;
     std::string damage;
-    for (const std::string& file : {last, before}) {
+    for (const std::string& file : {last, before, final}) {
         if (!exists(file)) continue;
         try {
             read(read_file(file, most), file);
@@ -201,9 +201,7 @@ bool CheckpointFiles::load(
         return true;
     }
     if (!damage.empty()) throw IoError(damage);
-    if (!exists(final)) return false;
-    read(read_file(final, most), final);
-    return true;
+    return false;
 }
 
 void CheckpointFiles::save_final(const std::string& bytes) const { write_file(final, bytes); }

@@ -147,8 +147,8 @@ public:
     /// The same in pieces; see write_file
     void save(const std::function<void(const Append&)>& content) const;
     /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one
-    /// before, with a warning. Without either, calls it for the checkpoint at the end of the run. Returns
-    /// false if there is no checkpoint. IoError if none can be read.
+    /// before, then for that at the end of the run that is extended, with a warning. Returns false if there
+    /// is no checkpoint. IoError if none can be read.
     bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
     /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
     void save_final(const std::string& bytes) const;

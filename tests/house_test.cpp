@@ -61,6 +61,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "insertion",
       "mesh",
       "program",
+      "stages",
       "validations",
       "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},

@@ -44,6 +44,9 @@ public:
         return result;
     }
 
+    /// Whether both have the same law, with any parameters
+    bool is_same_law(const AnyOf& other) const { return index == other.index; }
+
     /// Reads the law with this name from its keys; false if no law has the name.
     template <class Keys>
     bool read(const std::string& name, Keys& keys)

@@ -133,7 +133,7 @@ public:
         if (materials.empty()) o.fail("materials", "a case must have at least one material, got none");
         out.world = std::make_unique<World>(world, materials);
         for (ObjectReader& l : o.objects("laws")) law(l);
-        for (ObjectReader& b : o.objects("boundaries")) read_boundaries(b);
+        for (ObjectReader& b : o.objects("boundaries")) read_boundaries(b), ++boundary_entry;
         sum_parts();
         for (auto& [n, place] : bounds) add_boundary(n, place);
         set_parts();
@@ -149,8 +149,21 @@ public:
             for (const Insertion& i : out.insertions->all) inserted += i.what().largest_count(out.end);
         Environment available = environment;
         available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
-        check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
-                     fills, inserted, out.outputs, available);
+        if (environment.with_particles) {
+            check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
+                         fills, inserted, out.outputs, available);
+            add_fills();
+            if (out.insertions == nullptr)
+                for (const FallingTool& tool : falling_tools(*out.world, out.boundaries, world.gravity))
+                    out.notices.push_back(place_of(tool.boundary) + ": " + tool.text);
+        }
+        start_motions();
+        if (out.insertions != nullptr) out.insertions->start(*out.world, out.end);
+    }
+
+private:
+    void add_fills()
+    {
         double all = 0;
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));
@@ -161,14 +174,8 @@ public:
             if (!fills[k].file.empty()) out.tables[fill_places[k].pointer()] = fills[k].file;
             std::vector<Particle>().swap(fills[k].particles);
         }
-        if (out.insertions == nullptr)
-            for (const FallingTool& tool : falling_tools(*out.world, out.boundaries, world.gravity))
-                out.notices.push_back(place_of(tool.boundary) + ": " + tool.text);
-        start_motions();
-        if (out.insertions != nullptr) out.insertions->start(*out.world, out.end);
     }
 
-private:
     void options(ObjectReader& o)
     {
         read_domain(o.object("domain"), world);
@@ -290,6 +297,7 @@ private:
                 o.fail("name", "two boundaries have the same name, got " + io::described(n.name));
             n.boundary.material = boundary_material;
             bounds.emplace_back(std::move(n), o);
+            out.entry_of_boundary.push_back(boundary_entry);
         }
         o.finish();
     }
@@ -400,10 +408,12 @@ private:
             p.e = {e[0], e[1], e[2], e[3]};
         }
         largest = std::max(largest, 2 * p.radius);
+        const std::optional<Vec3> force = o.has("force") ? std::optional(o.vec3("force")) : std::nullopt;
+        o.finish();
+        if (!environment.with_particles) return;
         const std::uint32_t id = o.located([&] { return out.world->add(p); });
         out.entries.emplace_back(id, o.pointer());
-        if (o.has("force")) out.world->set_force(id, o.vec3("force"));
-        o.finish();
+        if (force) out.world->set_force(id, *force);
     }
 
     void fill_spec(ObjectReader& o)
@@ -465,17 +475,15 @@ private:
     /// Evaluates the formulas of the boundaries for the first step, and registers them for all steps.
     void start_motions() const
     {
-        if (motions.empty()) return;
-        std::vector<BoundaryMotion> all;
         for (const auto& [motion, o] : motions) {
-            all.push_back(motion);
+            out.motions->push_back(motion);
             try {
                 apply_motions(*out.world, {motion}, out.h);
             } catch (const NotFinite& e) {
                 o.fail(e.what());
             }
         }
-        out.world->before_each_step([all, h = out.h](World& w) { apply_motions(w, all, h); });
+        out.world->before_each_step([all = out.motions, h = out.h](World& w) { apply_motions(w, *all, h); });
     }
 
     Case& out;
@@ -486,6 +494,7 @@ private:
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
     std::vector<std::pair<NamedBoundary, ObjectReader>> bounds;  ///< with their entries
     std::vector<std::pair<std::string, double>> meshes;          ///< places and diagonals [m]
+    std::size_t boundary_entry = 0;                              ///< of the entry that is read
     std::string free;    ///< pointer of the first boundary with a mass
     double largest = 0;  ///< diameter of the particles that are given one by one [m]
     bool rotation_laws = false;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/case/motion.hpp"
 #include "granular/case/output_spec.hpp"
 #include "granular/insertion/insertion.hpp"
 #include "granular/world/world.hpp"
@@ -28,10 +29,13 @@ struct Case {
     double interval = 0;        ///< time between rows of run.csv [s]
     double frame_interval = 0;  ///< time between frames [s]
     OutputSpecs outputs = {};
-    std::vector<std::string> boundaries = {};  ///< names, by number
-    std::vector<int> moving = {};              ///< numbers of the boundaries that move
-    std::vector<std::string> notices = {};     ///< warnings, with their location
-    std::string files_read = {};               ///< names and checksums of the other files that were read
+    std::vector<std::string> boundaries = {};         ///< names, by number
+    std::vector<std::size_t> entry_of_boundary = {};  ///< its index in `boundaries` of the case, by number
+    std::vector<int> moving = {};                     ///< numbers of the boundaries that move
+    /// Formulas of the boundaries, which the world evaluates in each step
+    std::shared_ptr<std::vector<BoundaryMotion>> motions = std::make_shared<std::vector<BoundaryMotion>>();
+    std::vector<std::string> notices = {};  ///< warnings, with their location
+    std::string files_read = {};            ///< names and checksums of the other files that were read
     /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};
     std::map<std::string, std::string> tables = {};  ///< table file of an entry of `fill`, by its pointer
@@ -50,6 +54,7 @@ struct Environment {
     /// Case of the run that is continued, or nullptr. Its intervals replace those that the case does not
     /// state.
     const io::JsonSource* continues = nullptr;
+    bool with_particles = true;  ///< otherwise those of `particles` and `fill` are read and not added
 };
 
 /// Reads a case and constructs its world. `file` is the name used in messages. The required memory is

@@ -43,7 +43,11 @@ double end_of(const io::JsonSource& source) { return ObjectReader(source, source
 
 void keep_intervals(io::JsonSource& source, const io::JsonSource& run)
 {
-    const bool same_end = end_of(source) == end_of(run);
+    // the default of the interval of the frames follows from both
+    const io::Json::Member *const now = source.root.member("interval"), *before = run.root.member("interval");
+    const bool same_interval =
+        now == nullptr || (before != nullptr && io::written(now->value) == io::written(before->value));
+    const bool same_end = end_of(source) == end_of(run) && same_interval;
     const std::size_t changes = source.changes.size();
     for (const Entry& of_run : entries(run))
         if (source.root.member(of_run.key) == nullptr && (of_run.is_stated || !same_end)) set(source, of_run);

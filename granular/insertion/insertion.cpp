@@ -21,9 +21,9 @@ double stored_mass(double radius, double density)
 
 }  // namespace
 
-double InsertionSpec::due(double t) const
+double InsertionSpec::due(double t, double since) const
 {
-    const double time = std::min(t, to) - from;
+    const double time = std::min(t, to) - std::max(from, since);
     if (!(time >= 0)) return 0;
     if (mass_rate > 0) return mass_rate * time;
     // a number that is whole up to rounding errors is whole
@@ -55,12 +55,34 @@ std::vector<Particle> InsertionSpec::samples() const
 
 Insertion::Insertion(const InsertionSpec& of) : spec(of) { state.random = spec.seed; }
 
+double Insertion::due(double t) const
+{
+    if (!base.is_set || (spec.rate == 0 && spec.mass_rate == 0)) return spec.due(t);
+    return (spec.mass_rate > 0 ? base.mass : static_cast<double>(base.count)) + spec.due(t, base.t);
+}
+
 bool Insertion::is_due(const State& now, double t) const
 {
-    if (now.count >= spec.count) return false;
-    if (spec.mass_rate == 0) return static_cast<double>(now.count) < spec.due(t);
+    if (now.count >= spec.count || !spec.active) return false;
+    if (spec.mass_rate == 0) return static_cast<double>(now.count) < due(t);
     // the inserted mass is the closest one to that which is due
-    return now.mass + stored_mass(now.radius, spec.density) / 2 <= spec.due(t);
+    return now.mass + stored_mass(now.radius, spec.density) / 2 <= due(t);
+}
+
+void Insertion::set_flow(const InsertionSpec& of)
+{
+    spec.rate = of.rate, spec.mass_rate = of.mass_rate, spec.to = of.to;
+    spec.v = of.v, spec.random_v = of.random_v, spec.active = of.active;
+}
+
+void Insertion::transfer_base(io::Archive& a)
+{
+    auto is_set = static_cast<std::uint64_t>(base.is_set);
+    a.value(is_set), a.value(base.t), a.value(base.count), a.value(base.mass);
+    base.is_set = is_set != 0;
+    a.check(is_set <= 1 && std::isfinite(base.t) && std::isfinite(base.mass) && base.count >= 0,
+            io::formatted("invalid restart of the insertion '%s', got t = %g s, %lld particles of %g kg",
+                          spec.name.c_str(), base.t, static_cast<long long>(base.count), base.mass));
 }
 
 void Insertion::throw_blocked(const State& now, double t) const
@@ -148,6 +170,16 @@ void Insertions::start(World& world, double t)
     world.before_each_step([this](World& w) {
         for (Insertion& i : all) i.before_step(w);
     });
+}
+
+bool Insertions::is_restarted() const
+{
+    return std::any_of(all.begin(), all.end(), [](const Insertion& i) { return i.is_restarted(); });
+}
+
+void Insertions::transfer_bases(io::Archive& a)
+{
+    for (Insertion& i : all) i.transfer_base(a);
 }
 
 void Insertions::transfer(io::Archive& a)

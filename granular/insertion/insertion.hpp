@@ -38,11 +38,14 @@ struct InsertionSpec {
     bool postpones = true;     ///< a particle that finds no place waits for the next insertion
     long most_tries = 100000;  ///< positions in turn without place, after which the run ends
     std::uint64_t seed = 1;
+    bool active = true;  ///< otherwise nothing is inserted
 
     static constexpr long tries_at_once = 200;  ///< positions that are tried for a particle in one insertion
 
     /// Number of particles that are due until t, or their mass [kg] with a mass_rate
-    double due(double t) const;
+    double due(double t) const { return due(t, from); }
+    /// The same of the amounts since a later time than `from`
+    double due(double t, double since) const;
     /// Largest number of particles until t; with a mass rate an estimate from above
     double largest_count(double t) const;
     /// A particle with a radius, without a place
@@ -69,7 +72,25 @@ public:
     double mass() const { return state.mass; }          ///< of all inserted particles [kg]
     void transfer(io::Archive& a);
 
+    /// Takes the amounts, velocities and `active` of another entry.
+    void set_flow(const InsertionSpec& of);
+    /// The amounts are due from this time on, besides those that were inserted before.
+    void restart(double t) { base = {true, t, state.count, state.mass}; }
+    /// Transfers the time of restart(), which is not part of transfer().
+    void transfer_base(io::Archive& a);
+    bool is_restarted() const { return base.is_set; }
+
 private:
+    /// Time of the last restart() [s], and what was inserted before it [, kg]
+    struct Base {
+        bool is_set = false;
+        double t = 0;
+        std::int64_t count = 0;
+        double mass = 0;
+    };
+    /// Number of particles that are due until t, or their mass [kg] with a mass_rate
+    double due(double t) const;
+
     /// Written to checkpoints as bytes, without padding
     struct State {
         std::uint64_t random = 0;  ///< state of the random numbers
@@ -85,6 +106,7 @@ private:
 
     InsertionSpec spec;
     State state;
+    Base base;
 };
 
 /// All insertions of a case
@@ -97,6 +119,9 @@ struct Insertions {
     /// outlives the world.
     void start(World& world, double t);
     void transfer(io::Archive& a);
+    /// Whether an insertion was started again; then transfer_bases() has to be called as well.
+    bool is_restarted() const;
+    void transfer_bases(io::Archive& a);
 };
 
 /// Reads an entry of `insert`, without material and replica, of a case with a step h and gravity [s, m/s²].

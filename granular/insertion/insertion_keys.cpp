@@ -58,6 +58,7 @@ InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h,
     s.most_tries = o.count("tries", s.most_tries);
     if (s.most_tries < InsertionSpec::tries_at_once)
         o.fail("tries", "tries must be at least 200, got " + std::to_string(s.most_tries));
+    s.active = o.flag("active", true);
     s.seed = static_cast<std::uint64_t>(o.count("seed", 1));
     return s;
 }

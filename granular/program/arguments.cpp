@@ -109,8 +109,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_flag("--allow-paths", o.allow_paths,
                  "read the tables that the case names also if they are not below the folder of the case");
     app.add_flag("--resume", o.resume,
-                 "continue the run in the output directory from its last checkpoint; a complete run "
-                 "continues to a later --end");
+                 "continue the run in the output directory from its last checkpoint, also with another "
+                 "gravity, motion or law (--set); a complete run continues to a later --end");
     value("--checkpoint", "S",
           "wall time between checkpoints [s]; 0: only after an interruption; default: 600",
           assign(o.checkpoint, io::nonnegative_number));

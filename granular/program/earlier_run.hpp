@@ -18,8 +18,8 @@ struct EarlierRun {
 
 /// The run in the output directory, which the run of case c continues.
 ///
-/// Throws io::IoError if it is of another case, or if its end differs and --end is not given; io::UsageError
-/// if it has reached an end after that of c, or if it is complete and has no checkpoint for a later end.
+/// Throws io::UsageError if it has reached an end after that of c, or if it is complete and has no checkpoint
+/// for a later end.
 EarlierRun earlier_run(const Options& options, const Case& c);
 
 /// Throws io::UsageError: the end of c is not after the time [s] that the run in the output directory has

@@ -93,10 +93,14 @@ int run_case(const Options& o)
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     if (!o.allow_paths) here.folder = folder_of(o.file);
     const std::string text = text_of_case(o.file);
-    const std::optional<io::JsonSource> earlier =
-        o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
-    if (earlier) here.continues = &*earlier;
-    const auto read = [&] { return read_case(text, o.file, here); };
+    const auto read = [&] {
+        const std::optional<io::JsonSource> earlier =
+            o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
+        if (!earlier) return new_run(text, o.file, here);
+        Environment continued = here;
+        continued.continues = &*earlier;
+        return continued_run(text, o.file, continued, o.output, *earlier);
+    };
     return run(o, read(), read);
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/run.hpp"
 
-#include "granular/case/continued_case.hpp"
 #include "granular/program/earlier_run.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/program/sink.hpp"
 #include "granular/program/watch_report.hpp"
+#include "granular/stages/change_history.hpp"
+#include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -13,6 +14,7 @@
 #include "io/program.hpp"
 #include "io/progress.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -30,9 +32,9 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 
 class CaseRun : private io::Verbosity {
 public:
-    CaseRun(const Options& o, Case from, const std::function<Case()>& read_again)
-        : Verbosity{o.quiet, o.verbose}, o(o), c(std::move(from)),
-          read_again(read_again), setup{c, o.output, o.outputs}, id(identity(c.source) + c.files_read),
+    CaseRun(const Options& o, Continuation from, const std::function<Continuation()>& read_again)
+        : Verbosity{o.quiet, o.verbose}, o(o), from(std::move(from)), c(this->from.c),
+          read_again(read_again), setup{c, o.output, o.outputs}, id(id_of(c)),
           interval(setup.steps_in(c.interval)), steps(std::lround(c.end / c.h)), files(o.output), sinks(setup)
     {}
 
@@ -47,7 +49,8 @@ public:
                           c.boundaries.size(), steps, c.h));
         lock.create();
         if (o.resume) earlier = earlier_run(o, c);
-        if (earlier.is_complete && earlier.end == steps) return report_complete(o, c);
+        if (earlier.is_complete && earlier.end == steps && from.changes.empty()) return report_complete(o, c);
+        if (earlier.is_complete && earlier.end == steps) refuse_end(o, c, c.end);
         const bool resumed = o.resume && load();
         // with --strict the warnings of an earlier part of the run end this one
         if (resumed && !o.strict) known_warnings = c.world->watch().warnings;
@@ -56,7 +59,8 @@ public:
             files.remove();
             io::Sinks<CaseSetup>::remove(o.output);
             std::remove(file("summary.json").c_str());
-            io::write_file(file("case.json"), c.source.current_text());
+            remove_earlier_cases(o.output);
+            write_case();
             sinks.open();
         }
         resumed_at = c.world->steps();
@@ -88,7 +92,10 @@ private:
         if (c.h > stable) {
             const std::string what =
                 io::formatted("step must not be above %.3g s, the stability limit, got %g", stable, c.h);
-            const bool accepted = o.force || (o.resume && earlier_case(o.output));  // at the start of the run
+            const bool other_laws = std::any_of(from.pointers.begin(), from.pointers.end(),
+                                                [](const std::string& p) { return p.starts_with("/laws"); });
+            const bool accepted =  // at the start of the run
+                o.force || (o.resume && earlier_case(o.output) && !other_laws);
             if (!accepted) c.source.fail("/step", what + "; --force overrides");
             warn(c.source.place("/step") + ": " + what);
         } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
@@ -103,33 +110,71 @@ private:
     /// Throws io::UsageError if it is not before the end.
     bool load()
     {
-        return files.load([&](const std::string& bytes, const std::string& from) {
-            try {
-                c.world->from_bytes(bytes, id, from, [&](io::Archive& a) {
-                    io::Sinks<CaseSetup>::Saved saved_sinks;
-                    a.map(saved_sinks);
-                    transfer_insertions(a);
-                    sinks.open(saved_sinks, from);
-                });
-            } catch (const MeshChanged& e) {
-                throw MeshChanged(from, e.boundary, '\'' + c.boundaries[e.boundary] + '\'');
-            }
+        return files.load([&](const std::string& bytes, const std::string& file) {
+            const bool before_change = restore(bytes, file);
             const long most = std::max(earlier.end, steps);
             if (c.world->steps() > most)
                 throw io::IoError(
                     io::formatted("%s: the checkpoint is damaged: the run has at most %ld steps, got %ld",
-                                  from.c_str(), most, c.world->steps()));
+                                  file.c_str(), most, c.world->steps()));
             try {
                 check_state();
             } catch (const NotFiniteState& e) {
-                throw io::IoError(from + ": the checkpoint is damaged: " + e.what());
+                throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
             } catch (const ParticleLost&) {  // the first step reports it
             }
             if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
-            rows = c.world->steps() / interval + 1;  // including t = 0
+            if (before_change) begin_change();
+            rows = history.rows(c.world->steps(), interval);
             recorded = written = c.world->steps();
-            log(io::formatted("continues from %s at t = %g s", from.c_str(), c.world->t()));
+            log(io::formatted("continues from %s at t = %g s", file.c_str(), c.world->t()));
         });
+    }
+
+    /// Restores the state in the bytes of a checkpoint. Returns whether it is that before the changes of this
+    /// continuation: a run that was interrupted just after a change has one with it.
+    bool restore(const std::string& bytes, const std::string& file)
+    {
+        const auto read = [&](const std::string& run_id) {
+            c.world->from_bytes(bytes, run_id, file, [&](io::Archive& a) {
+                io::Sinks<CaseSetup>::Saved saved_parts;
+                a.map(saved_parts);
+                transfer_insertions(a);
+                read_parts(saved_parts, file);
+                sinks.open(saved_parts, file);
+            });
+        };
+        try {
+            if (from.changes.empty()) return read(id), false;
+            try {
+                return read(from.earlier_id), true;
+            } catch (const io::IoError& e) {
+                try {
+                    return read(id), false;
+                } catch (const io::IoError&) {
+                }
+                throw;
+            }
+        } catch (const MeshChanged& e) {
+            throw MeshChanged(file, e.boundary, '\'' + c.boundaries[e.boundary] + '\'');
+        }
+    }
+
+    /// Changes the case at the present instant.
+    void begin_change()
+    {
+        const World& w = *c.world;
+        granular::begin_change(c, *from.changed, from.pointers);
+        std::string all;
+        for (const std::string& change : from.changes) all += (all.empty() ? "" : "; ") + change;
+        history.all.push_back({.t = w.t(),
+                               .step = w.steps(),
+                               .rows = history.rows(w.steps(), setup.steps_in(from.earlier_interval)),
+                               .what = from.changes});
+        if (!o.quiet)
+            io::message(
+                io::formatted("hilda: %s: the case changes at t = %.9g s: ", o.output.c_str(), w.t()) + all +
+                '\n');
     }
 
     /// Computes the steps. A checkpoint is possible after each of them and does not change the results.
@@ -139,7 +184,7 @@ private:
         World& w = *c.world;
         try {
             if (!resumed) record();
-            if (resumed && earlier.end != steps) begin_other_end();
+            if (resumed && (earlier.end != steps || !from.changes.empty())) begin_other_case();
             while (w.steps() < steps && io::Interrupt::caught() == 0) {
                 w.step();
                 particle_steps += static_cast<double>(w.count());
@@ -231,13 +276,15 @@ private:
     void compute_again(long last)
     {
         log("computes the steps before the failure again");
-        Case again = read_again();
-        if (identity(again.source) + again.files_read != id)
+        Continuation again = read_again();
+        if (id_of(again.c) != id)
             throw io::IoError(o.file +
                               ": the case has changed during the run; the state before the failure "
                               "cannot be computed again");
-        c.world = std::move(again.world);  // releases the memory of the world that has failed
-        c.insertions = std::move(again.insertions);
+        c.world = std::move(again.c.world);  // releases the memory of the world that has failed
+        c.insertions = std::move(again.c.insertions);
+        c.motions = std::move(again.c.motions);
+        history = {};
         start();
         sinks = io::Sinks<CaseSetup>(setup);
         rows = 0;
@@ -254,22 +301,53 @@ private:
         line.clear();
     }
 
-    /// The run in the directory has another end from here on. It is incomplete, and it can be resumed at any
-    /// time.
-    void begin_other_end()
+    /// The run in the directory has another end or other parameters from here on. It is incomplete, and it
+    /// can be resumed at any time: the earlier case is kept before a checkpoint has the change, and
+    /// case.json has it thereafter.
+    void begin_other_case()
     {
+        if (!from.changes.empty())
+            io::write_file(file(name_of_earlier_case(history.all.size())), from.earlier_text);
         save();
-        io::write_file(file("case.json"), c.source.current_text());
+        write_case();
         std::remove(file("summary.json").c_str());
+    }
+    void write_case() const
+    {
+        if (!from.given.empty())
+            io::write_file(file("case-given.json"), from.given);
+        else
+            std::remove(file("case-given.json").c_str());
+        io::write_file(file("case.json"), c.source.current_text());
     }
 
     /// Passes the state of the run on in pieces.
-    void write_state(io::Sinks<CaseSetup>::Saved saved_sinks, const io::Append& append) const
+    void write_state(io::Sinks<CaseSetup>::Saved saved_parts, const io::Append& append) const
     {
+        add_parts(saved_parts);
         c.world->write(id, append, [&](io::Archive& a) {
-            a.map(saved_sinks);
+            a.map(saved_parts);
             transfer_insertions(a);
         });
+    }
+    /// The parts of the state that only some runs have, beside those of the sinks
+    static constexpr const char *changes_part = "run.changes", *insertions_part = "run.insertions";
+    void add_parts(io::Sinks<CaseSetup>::Saved& parts) const
+    {
+        if (!history.all.empty()) parts[changes_part] = history.bytes();
+        if (c.insertions == nullptr || !c.insertions->is_restarted()) return;
+        io::Archive a;
+        c.insertions->transfer_bases(a);
+        parts[insertions_part] = a.bytes();
+    }
+    void read_parts(const io::Sinks<CaseSetup>::Saved& parts, const std::string& file)
+    {
+        if (const auto at = parts.find(changes_part); at != parts.end()) history.read(at->second, file);
+        if (const auto at = parts.find(insertions_part); at != parts.end() && c.insertions != nullptr) {
+            io::Archive a(at->second, file);
+            c.insertions->transfer_bases(a);
+            a.end();
+        }
     }
     void transfer_insertions(io::Archive& a) const
     {
@@ -346,6 +424,7 @@ private:
                                {"mass", i.mass()}});
             s["insertions"] = all;
         }
+        if (!history.all.empty()) s["changes"] = history.summary();
         s["kinetic_energy"] = w.kinetic_energy();
         s["watch"] = watch_summary(w.watch());
         s["files"] = sinks.files();
@@ -360,13 +439,15 @@ private:
     }
 
     const Options& o;
-    Case c;
-    const std::function<Case()>& read_again;
+    Continuation from;
+    Case& c;  ///< of `from`
+    const std::function<Continuation()>& read_again;
     const CaseSetup setup;
     const std::string id;  ///< of the case and its files; see identity()
     const long interval, steps;
     const io::CheckpointFiles files;
     io::Sinks<CaseSetup> sinks;
+    ChangeHistory history;
     long rows = 0;                    ///< of run.csv
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0;
@@ -379,9 +460,9 @@ private:
 
 }  // namespace
 
-int run(const Options& options, Case c, const std::function<Case()>& read_again)
+int run(const Options& options, Continuation run, const std::function<Continuation()>& read_again)
 {
-    return CaseRun(options, std::move(c), read_again).execute();
+    return CaseRun(options, std::move(run), read_again).execute();
 }
 
 }  // namespace hilda::granular

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "granular/program/arguments.hpp"
+#include "granular/stages/continuation.hpp"
 
 #include <functional>
 
@@ -11,6 +12,6 @@ namespace hilda::granular {
 
 /// Runs a case to its end and returns the exit code. `read_again` reads the same case, for the state before a
 /// numerical failure. Throws io::InvalidInput, io::IoError, DeviceError.
-int run(const Options& options, Case c, const std::function<Case()>& read_again);
+int run(const Options& options, Continuation run, const std::function<Continuation()>& read_again);
 
 }  // namespace hilda::granular

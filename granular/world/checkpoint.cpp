@@ -90,7 +90,7 @@ std::string fault(const Domain& d, const WorldOptions& options)
 bool valid_removed(const RemovedParticle& p)
 {
     return finite(p.r) && finite(p.v) && finite(p.omega) && std::isfinite(p.t) && std::isfinite(p.radius) &&
-           std::isfinite(p.mass) && p.side < 6;
+           std::isfinite(p.mass) && p.side <= RemovedParticle::none;
 }
 std::string shown(const RemovedParticle& p)
 {

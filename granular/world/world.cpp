@@ -71,6 +71,14 @@ void World::set_law(int i, int j, const PairLaw& law)
     invalidate_neighbours();
 }
 
+void World::set_laws(const std::vector<PairLaw>& all)
+{
+    if (all.size() != laws.size()) refuse("laws", "their number must not change", all.size());
+    laws = all;
+    // before the first neighbour search that sends them
+    if (!laws_changed) engine->set_laws(laws, law_of, static_cast<std::uint32_t>(materials.size()));
+}
+
 int World::add(const Boundary& b)
 {
     if (b.shape == Boundary::Shape::mesh)

@@ -94,7 +94,8 @@ struct RemovedParticle {
     double t = 0;                                          ///< [s]
     Vec3 r = {0, 0, 0}, v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m, m/s, rad/s]
     double radius = 0, mass = 0;                           ///< [m, kg]; mass is 0 for a fixed particle
-    std::uint32_t id = 0, side = 0;                        ///< side: index into WorldOptions::outflow
+    std::uint32_t id = 0, side = 0;  ///< side: index into WorldOptions::outflow, or none for World::remove()
+    static constexpr std::uint32_t none = 6;
 };
 
 /// A contact at t. Vectors are in the global frame.
@@ -121,6 +122,7 @@ struct WorldOptions {
     /// recorded in World::removed(). A side along a periodic axis has no effect.
     std::array<bool, 6> outflow = {};
     bool delete_lost = false;      ///< the same for all other sides; otherwise ParticleLost is thrown
+    bool removable = false;        ///< World::remove() is used
     Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
     double h = 0;                  ///< step [s]
     double skin = 0.1;  ///< skin of the neighbour list, in median diameters of the particles, in (0, 1]
@@ -148,6 +150,15 @@ public:
     /// Sets the contact law between two materials. A boundary has the law of its material. At most 255 laws
     /// can be set. Throws io::InvalidInput.
     void set_law(int material_i, int material_j, const PairLaw& law);
+    const std::vector<PairLaw>& all_laws() const { return laws; }
+    /// Replaces the parameters of all laws, which are those of all_laws() otherwise. The energy balance of
+    /// the watch has to begin again: start_balance().
+    void set_laws(const std::vector<PairLaw>& all);
+    /// Sets the acceleration of gravity from the next step on. See set_laws() for the watch.
+    void set_gravity(const Vec3& gravity) { options.gravity = gravity; }
+    const Vec3& gravity() const { return options.gravity; }
+    /// Begins the balances of the watch again: the run is changed from outside.
+    void start_balance() { record.is_balanced = 0; }
     /// Adds a boundary and returns its number. Throws io::InvalidInput.
     int add(const Boundary& boundary);
     /// Adds a boundary with Shape::mesh. Its vertices are relative to Boundary::r in the frame of the mesh,
@@ -292,6 +303,9 @@ public:
     Vec3 momentum() const { return sums().momentum; }
     /// The particles that were removed since the last call of clear_removed(), ordered by time, then by id
     const std::vector<RemovedParticle>& removed() const { return removed_particles; }
+    /// Removes and records the particles with these ids, which are in ascending order. Ids of particles that
+    /// are not there have no effect. WorldOptions::removable must be set.
+    void remove(const std::vector<std::uint32_t>& ids);
     void clear_removed() { removed_particles.clear(); }
     /// Number and mass of all removed particles [kg]
     struct Outflow {
@@ -302,7 +316,7 @@ public:
     /// Whether particles that leave the domain are removed, through one side at least
     bool removes() const
     {
-        return options.delete_lost ||
+        return options.delete_lost || options.removable ||
                std::find(options.outflow.begin(), options.outflow.end(), true) != options.outflow.end();
     }
     /// Number of particles, pending ones included
@@ -384,6 +398,8 @@ private:
     void find_neighbours() const;
     void rebuild_neighbours();
     void remove_outside();
+    RemovedParticle removed_at(std::uint32_t k, std::uint32_t side) const;
+    void keep_particles(const std::vector<std::uint32_t>& kept, std::size_t first_removed);
     bool is_removed(std::uint32_t id) const;
     void attach(const Particle& p);
     int boundary_of(std::uint32_t id) const;
@@ -417,7 +433,6 @@ private:
     bool is_sample() const;
     void watch_loads();
     void watch_advance();
-    void start_balance() { record.is_balanced = 0; }
     double gain_tolerance() const;
     void check_watch();
     void check_tools();

@@ -69,36 +69,72 @@ void World::throw_left(std::uint32_t id) const
                "has left the domain");
 }
 
-/// Removes and records the particles outside the domain with their contacts. The list of pairs keeps those in
-/// contact only; a neighbour search has to follow. Throws ParticleLost for a particle outside that has left
-/// through another side.
+/// The record of the particle with index k in the arrays
+RemovedParticle World::removed_at(std::uint32_t k, std::uint32_t side) const
+{
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    const Float4 v = p.velocity.data()[k], w = p.omega.data()[k];
+    return {.t = time,
+            .r = global_position(domain.grid, p.position.data()[k]),
+            .v = to_double(v),
+            .omega = to_double(w),
+            .radius = v.w,
+            .mass = w.w > 0 ? 1 / static_cast<double>(w.w) : 0,
+            .id = p.id.data()[k],
+            .side = side};
+}
+
+/// Removes and records the particles outside the domain. Throws ParticleLost for a particle outside that has
+/// left through another side.
 void World::remove_outside()
 {
-    Arrays<par::Cpu>& a = engine->arrays();
-    Particles<par::Cpu>& p = a.particle;
-    constexpr std::uint32_t none = ~std::uint32_t{0};
-    std::vector<std::uint32_t> kept, new_index(p.count, none);
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    std::vector<std::uint32_t> kept;
     const std::size_t first = removed_particles.size();
     for (std::uint32_t k = 0; k < p.count; ++k) {
         const int side = side_behind(domain.grid, p.position.data()[k]);
         if (side < 0) {
-            new_index[k] = static_cast<std::uint32_t>(kept.size());
             kept.push_back(k);
             continue;
         }
         if (!options.outflow[static_cast<std::size_t>(side)] && !options.delete_lost)
             throw_left(p.id.data()[k]);
-        const Float4 v = p.velocity.data()[k], w = p.omega.data()[k];
-        removed_particles.push_back({.t = time,
-                                     .r = global_position(domain.grid, p.position.data()[k]),
-                                     .v = to_double(v),
-                                     .omega = to_double(w),
-                                     .radius = v.w,
-                                     .mass = w.w > 0 ? 1 / static_cast<double>(w.w) : 0,
-                                     .id = p.id.data()[k],
-                                     .side = static_cast<std::uint32_t>(side)});
+        removed_particles.push_back(removed_at(k, static_cast<std::uint32_t>(side)));
     }
+    keep_particles(kept, first);
+}
+
+void World::remove(const std::vector<std::uint32_t>& ids)
+{
+    insert_pending();
+    const Particles<par::Cpu>& p = engine->arrays().particle;
+    std::vector<std::uint32_t> kept;
+    const std::size_t first = removed_particles.size();
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        if (std::binary_search(ids.begin(), ids.end(), p.id.data()[k]))
+            removed_particles.push_back(removed_at(k, RemovedParticle::none));
+        else
+            kept.push_back(k);
     if (kept.size() == p.count) return;
+    const auto is_removed_one = [&](const AttachedParticle& a) {
+        return std::binary_search(ids.begin(), ids.end(), a.id);
+    };
+    if (std::erase_if(attached, is_removed_one) > 0) attached_changed = true;
+    if (attached.empty()) posed.clear();
+    keep_particles(kept, first);
+    invalidate_neighbours();
+}
+
+/// Keeps the particles with these indices. The others are in removed_particles from `first` on. The list of
+/// pairs keeps those in contact only; a neighbour search has to follow.
+void World::keep_particles(const std::vector<std::uint32_t>& kept, std::size_t first)
+{
+    Arrays<par::Cpu>& a = engine->arrays();
+    Particles<par::Cpu>& p = a.particle;
+    if (kept.size() == p.count) return;
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::vector<std::uint32_t> new_index(p.count, none);
+    for (std::uint32_t k = 0; k < kept.size(); ++k) new_index[kept[k]] = k;
     std::sort(removed_particles.begin() + static_cast<std::ptrdiff_t>(first), removed_particles.end(),
               [](const RemovedParticle& x, const RemovedParticle& y) { return x.id < y.id; });
     for (std::size_t k = first; k < removed_particles.size(); ++k)

@@ -56,7 +56,7 @@ EVERYTHING = {
              {"type": "lattice", "low": [-0.2, -0.8, 0.2], "high": [0.2, -0.6, 0.5], "material": "steel",
               "sizes": {"type": "table", "radii": [0.02, 0.03], "passing": [0, 1]}}],
     "insert": [{"name": "feed", "rate": 1e4, "from": 0, "to": 1, "interval": 1e-5, "radius": 0.02, "least_radius": 0.01, "v": [0, 0, -1],
-                "random_v": 0.1, "material": "glass", "replica": 0, "on_overlap": "postpone", "tries": 1000, "seed": 3, "count": 50,
+                "random_v": 0.1, "material": "glass", "replica": 0, "on_overlap": "postpone", "tries": 1000, "seed": 3, "count": 50, "active": True,
                 "region": {"type": "cylinder", "r": [0, 0, 0.7], "axis": [0, 0, 1], "radius": 0.3, "length": 0.2}},
                {"mass_rate": 20, "material": "steel", "sizes": {"type": "uniform", "least_radius": 0.01, "largest_radius": 0.02},
                 "region": {"type": "disk", "r": [0, 0, 1], "normal": [0, 0, 1], "radius": 0.2}},

@@ -9,6 +9,7 @@
 #include "granular/case/pair_keys.hpp"
 #include "granular/fields/field_sums.hpp"
 #include "io/error.hpp"
+#include "io/nearest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -129,6 +130,7 @@ public:
         o.allow_schema();
         out.name = o.text("name", "case");
         options(o);
+        for (ObjectReader& s : o.objects("stages")) stage(s);
         for (ObjectReader& m : o.objects("materials")) add_material(m);
         if (materials.empty()) o.fail("materials", "a case must have at least one material, got none");
         out.world = std::make_unique<World>(world, materials);
@@ -140,6 +142,7 @@ public:
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
         for (ObjectReader& i : o.objects("insert")) insertion(i);
+        check_groups();
         out.outputs = read_outputs(o, world);
         o.finish();
         check_mesh_sizes();
@@ -158,6 +161,8 @@ public:
                     out.notices.push_back(place_of(tool.boundary) + ": " + tool.text);
         }
         start_motions();
+        if (!groups.names.empty()) out.groups = std::make_shared<Groups>(groups);
+        if (out.insertions != nullptr) out.insertions->groups = out.groups;
         if (out.insertions != nullptr) out.insertions->start(*out.world, out.end);
     }
 
@@ -168,8 +173,9 @@ private:
         for (const FillSpec& f : fills) all += estimated_count(f);
         out.world->reserve(static_cast<std::size_t>(all));
         for (std::size_t k = 0; k < fills.size(); ++k) {
-            out.entries.emplace_back(static_cast<std::uint32_t>(out.world->count()),
-                                     fill_places[k].pointer());
+            const auto first = static_cast<std::uint32_t>(out.world->count());
+            out.entries.emplace_back(first, fill_places[k].pointer());
+            groups.add(first, fill_groups[k]);
             fill_places[k].located([&] { add_filled(fills[k]); });
             if (!fills[k].file.empty()) out.tables[fill_places[k].pointer()] = fills[k].file;
             std::vector<Particle>().swap(fills[k].particles);
@@ -200,6 +206,36 @@ private:
         o.positive("skin", world.skin);  // in single precision
         world.scheme = read_scheme(o);
         world.orientation = o.flag("orientation", false);
+    }
+
+    void stage(ObjectReader& o)
+    {
+        out.stage_specs.push_back(read_stage(o, out.h));
+        const StageSpec& now = out.stage_specs.back();
+        for (const StageSpec& other : out.stage_specs)
+            if (&other != &now && other.name == now.name)
+                o.fail("name", "two stages have the same name, got " + io::described(now.name));
+        world.removable = world.removable || !now.remove.empty();
+    }
+
+    /// The number of the group of an entry
+    int group(ObjectReader& o)
+    {
+        if (!o.has("group")) return Groups::none;
+        const std::string name = o.name("group");
+        if (name.find_first_of(",\"") != std::string::npos)
+            o.fail("group", "group must not contain commas and quotes, because it is in tables, got " +
+                                io::described(name));
+        return groups.number(name);
+    }
+
+    void check_groups() const
+    {
+        for (std::size_t k = 0; k < out.stage_specs.size(); ++k)
+            for (const std::string& name : out.stage_specs[k].remove)
+                if (std::find(groups.names.begin(), groups.names.end(), name) == groups.names.end())
+                    out.source.fail("/stages/" + std::to_string(k) + "/remove",
+                                    "no entry has the group" + io::with_nearest(name, groups.names));
     }
 
     void add_material(ObjectReader& o)
@@ -409,9 +445,11 @@ private:
         }
         largest = std::max(largest, 2 * p.radius);
         const std::optional<Vec3> force = o.has("force") ? std::optional(o.vec3("force")) : std::nullopt;
+        const int of = group(o);
         o.finish();
         if (!environment.with_particles) return;
         const std::uint32_t id = o.located([&] { return out.world->add(p); });
+        groups.add(id, of);
         out.entries.emplace_back(id, o.pointer());
         if (force) out.world->set_force(id, *force);
     }
@@ -425,8 +463,10 @@ private:
         spec.attached_to = attached_to(o);
         if (!world.orientation)
             for (Particle& p : spec.particles) p.e = Particle().e;
+        const int of = group(o);
         if (from_csv) out.files_read += "\n" + o.pointer("file") + ' ' + std::to_string(spec.checksum);
         o.finish();
+        fill_groups.push_back(of);
         fills.push_back(std::move(spec));
         fill_places.push_back(o);
     }
@@ -440,6 +480,7 @@ private:
         for (const Insertion& other : all)
             if (other.what().name == spec.name)
                 o.fail("name", "two insertions have the same name, got " + io::described(spec.name));
+        spec.group = group(o);
         spec.material = material(o);
         spec.density = materials[static_cast<std::size_t>(spec.material)].density;
         spec.replica = replica(o);
@@ -500,6 +541,8 @@ private:
     bool rotation_laws = false;
     std::vector<FillSpec> fills;
     std::vector<ObjectReader> fill_places;
+    std::vector<int> fill_groups;
+    Groups groups;
 };
 
 }  // namespace
@@ -517,6 +560,13 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
     CaseReader(out, environment).read();
     out.source.remove(key_without_effect);
+    return out;
+}
+
+Case read_case(const io::JsonSource& source, const Environment& environment)
+{
+    Case out{.source = source};
+    CaseReader(out, environment).read();
     return out;
 }
 

@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include "granular/case/groups.hpp"
 #include "granular/case/motion.hpp"
 #include "granular/case/output_spec.hpp"
+#include "granular/case/stage_spec.hpp"
 #include "granular/insertion/insertion.hpp"
 #include "granular/world/world.hpp"
 #include "io/json_source.hpp"
@@ -19,6 +21,8 @@ struct Setting {
     std::string change, origin = {};
 };
 
+class Stages;
+
 /// A case that is ready to run
 struct Case {
     io::JsonSource source;
@@ -29,6 +33,9 @@ struct Case {
     double interval = 0;        ///< time between rows of run.csv [s]
     double frame_interval = 0;  ///< time between frames [s]
     OutputSpecs outputs = {};
+    std::shared_ptr<Groups> groups = {};  ///< nullptr if there are none
+    std::vector<StageSpec> stage_specs = {};
+    std::shared_ptr<Stages> stages = {};  ///< of a run with stages, see continuation.hpp; nullptr otherwise
     std::vector<std::string> boundaries = {};         ///< names, by number
     std::vector<std::size_t> entry_of_boundary = {};  ///< its index in `boundaries` of the case, by number
     std::vector<int> moving = {};                     ///< numbers of the boundaries that move
@@ -62,6 +69,8 @@ struct Environment {
 ///
 /// Throws io::InvalidInput with file, line, column and JSON pointer of the invalid entry, and DeviceError.
 Case read_case(const std::string& text, const std::string& file, const Environment& environment = {});
+/// The same of a text that was read before. The changes of the environment are not applied.
+Case read_case(const io::JsonSource& source, const Environment& environment);
 
 /// Inserts the particles into the world. Throws io::InvalidInput with the place of the entry whose particles
 /// are invalid.

@@ -95,10 +95,10 @@ void Insertion::throw_blocked(const State& now, double t) const
         now.blocked_since, t, static_cast<long long>(now.count)));
 }
 
-void Insertion::before_step(World& world)
+std::optional<std::uint32_t> Insertion::before_step(World& world)
 {
     const long steps = world.steps() - spec.first_step;
-    if (steps < 0 || steps % spec.interval != 0) return;
+    if (steps < 0 || steps % spec.interval != 0) return {};
     const double t = world.t();
     State now = state;
     Random random(now.random);
@@ -131,8 +131,13 @@ void Insertion::before_step(World& world)
         }
     }
     now.random = random.state;
-    for (const Particle& p : placed) world.add(p);
+    std::optional<std::uint32_t> first;
+    for (const Particle& p : placed) {
+        const std::uint32_t id = world.add(p);
+        if (!first) first = id;
+    }
     state = now;
+    return first;
 }
 
 void Insertion::transfer(io::Archive& a)
@@ -168,7 +173,9 @@ void Insertions::start(World& world, double t)
     for (const Insertion& i : all)
         world.expect(i.what().samples(), static_cast<std::size_t>(std::min(i.what().largest_count(t), 4e9)));
     world.before_each_step([this](World& w) {
-        for (Insertion& i : all) i.before_step(w);
+        for (Insertion& i : all)
+            if (const std::optional<std::uint32_t> first = i.before_step(w); first && groups != nullptr)
+                groups->add(*first, i.what().group);
     });
 }
 

@@ -3,12 +3,15 @@
 
 #pragma once
 
+#include "granular/case/groups.hpp"
 #include "granular/insertion/region.hpp"
 #include "granular/insertion/sizes.hpp"
 #include "granular/world/world.hpp"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 
 namespace hilda::granular {
 
@@ -39,6 +42,7 @@ struct InsertionSpec {
     long most_tries = 100000;  ///< positions in turn without place, after which the run ends
     std::uint64_t seed = 1;
     bool active = true;  ///< otherwise nothing is inserted
+    int group = Groups::none;
 
     static constexpr long tries_at_once = 200;  ///< positions that are tried for a particle in one insertion
 
@@ -63,9 +67,9 @@ class Insertion {
 public:
     explicit Insertion(const InsertionSpec& spec);
 
-    /// Inserts the particles that are due; called before each step. Throws InsertionBlocked, and then the
-    /// state and the world are as before.
-    void before_step(World& world);
+    /// Inserts the particles that are due; called before each step. Returns the id of the first one, if there
+    /// are any. Throws InsertionBlocked, and then the state and the world are as before.
+    std::optional<std::uint32_t> before_step(World& world);
 
     const InsertionSpec& what() const { return spec; }
     std::int64_t count() const { return state.count; }  ///< of all inserted particles
@@ -112,6 +116,7 @@ private:
 /// All insertions of a case
 struct Insertions {
     std::vector<Insertion> all;
+    std::shared_ptr<Groups> groups = {};  ///< that learn of the inserted particles; nullptr if there are none
 
     std::int64_t count() const;
     double mass() const;

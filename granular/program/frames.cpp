@@ -44,7 +44,8 @@ public:
         if (!w.all_boundaries().empty()) io::write_file(directory + boundary_frame(k), boundaries_vtp(w));
         if (c.outputs.contacts && c.outputs.contacts->network)
             io::write_file(directory + contact_frame(k), contact_network_vtp(w, finite_contacts(w)));
-        io::write_file(directory + frame(k), [&](const io::Append& append) { particles_vtp(w, append); });
+        io::write_file(directory + frame(k),
+                       [&](const io::Append& append) { particles_vtp(w, append, c.groups.get()); });
     }
 
     /// Frames are missing if an earlier part of the run used --no-vtk. Later ones are of an interrupted run

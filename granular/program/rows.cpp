@@ -3,6 +3,7 @@
 /// those that move.
 
 #include "granular/program/sink.hpp"
+#include "granular/stages/stages.hpp"
 #include "io/message.hpp"
 
 #include <cmath>
@@ -52,6 +53,7 @@ private:
             if (has_orientation(c.world->all_boundaries()[static_cast<std::size_t>(b)]))
                 add({"_e0", "_e1", "_e2", "_e3"});
         }
+        if (c.stages != nullptr) names += ",stage";
         return names + '\n';
     }
 
@@ -74,6 +76,7 @@ private:
             text += io::formatted(",%.9g", moving.p.e0);
             append(text, moving.p.e);
         }
+        if (c.stages != nullptr) text += ',' + std::to_string(c.stages->number());
         text += '\n';
     }
 

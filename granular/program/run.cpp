@@ -6,6 +6,7 @@
 #include "granular/program/sink.hpp"
 #include "granular/program/watch_report.hpp"
 #include "granular/stages/change_history.hpp"
+#include "granular/stages/stages.hpp"
 #include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
@@ -103,7 +104,21 @@ private:
                  io::formatted("%g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
                                c.h / limits.rayleigh, c.h / limits.collision));
         }
+        if (c.stages != nullptr && c.h <= stable) check_step_of_stages();
         if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
+    }
+
+    /// The same with the laws of the stages
+    void check_step_of_stages() const
+    {
+        c.stages->each_step_limit(*c.world, [&](const std::string& at, const World::StepLimits& limits) {
+            const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
+            if (c.h <= stable) return;
+            const std::string what = io::formatted(
+                "the stability limit of the step is %.3g s with these laws, the step is %g", stable, c.h);
+            if (!o.force && !o.resume) c.source.fail(at, what + "; --force overrides");
+            warn(c.source.place(at) + ": " + what);
+        });
     }
 
     /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.
@@ -183,9 +198,9 @@ private:
         io::ProgressLine line(o.quiet);
         World& w = *c.world;
         try {
-            if (!resumed) record();
+            if (!resumed) begin_run();
             if (resumed && (earlier.end != steps || !from.changes.empty())) begin_other_case();
-            while (w.steps() < steps && io::Interrupt::caught() == 0) {
+            while (w.steps() < steps && io::Interrupt::caught() == 0 && !stages_are_over(true)) {
                 w.step();
                 particle_steps += static_cast<double>(w.count());
                 if (w.watch().warnings != known_warnings)
@@ -217,7 +232,11 @@ private:
             throw;
         }
         line.clear();
-        if (w.steps() == steps) return io::exit_code::done;
+        if (is_at_end()) {
+            if (c.stages != nullptr && !c.stages->is_last())
+                warn("the run has ended in stage '" + c.stages->what().name + "', before its last stage");
+            return io::exit_code::done;
+        }
         status = "interrupted";
         save();
         if (!o.quiet)
@@ -225,6 +244,26 @@ private:
                 "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint in %s\n", w.t(),
                 o.output.c_str()));
         return io::exit_code::signal + io::Interrupt::caught();
+    }
+
+    /// Records the initial state, in the first stage.
+    void begin_run()
+    {
+        if (c.stages != nullptr) c.stages->begin_run(c);
+        record();
+    }
+    /// Before a step: begins the next stage if the present one is over. Returns whether all are.
+    bool stages_are_over(bool report)
+    {
+        if (c.stages == nullptr) return false;
+        c.stages->update(c, [&](const std::string& text) {
+            if (report) warn(text);
+        });
+        return c.stages->have_ended();
+    }
+    bool is_at_end() const
+    {
+        return c.world->steps() == steps || (c.stages != nullptr && c.stages->have_ended());
     }
 
     /// Passes the state to the sinks that take it. Throws NotFiniteState before it is written.
@@ -284,6 +323,7 @@ private:
         c.world = std::move(again.c.world);  // releases the memory of the world that has failed
         c.insertions = std::move(again.c.insertions);
         c.motions = std::move(again.c.motions);
+        c.groups = std::move(again.c.groups), c.stages = std::move(again.c.stages);
         history = {};
         start();
         sinks = io::Sinks<CaseSetup>(setup);
@@ -291,9 +331,9 @@ private:
         io::ProgressLine line(o.quiet);
         if (!load()) {
             sinks.open();
-            record();
+            begin_run();
         }
-        while (c.world->steps() < last && io::Interrupt::caught() == 0) {
+        while (c.world->steps() < last && io::Interrupt::caught() == 0 && !stages_are_over(false)) {
             c.world->step();
             record();
             if (line.is_due()) line.show(progress());
@@ -331,24 +371,44 @@ private:
         });
     }
     /// The parts of the state that only some runs have, beside those of the sinks
-    static constexpr const char *changes_part = "run.changes", *insertions_part = "run.insertions";
+    static constexpr const char *changes_part = "run.changes", *insertions_part = "run.insertions",
+                                *stages_part = "run.stages", *groups_part = "run.groups";
+    template <class F>
+    static void read_part(const io::Sinks<CaseSetup>::Saved& parts, const char* part, const std::string& file,
+                          const F& read)
+    {
+        const auto at = parts.find(part);
+        if (at == parts.end()) throw io::IoError(file + ": the checkpoint is damaged: it has no " + part);
+        io::Archive a(at->second, file);
+        read(a);
+        a.end();
+    }
     void add_parts(io::Sinks<CaseSetup>::Saved& parts) const
     {
         if (!history.all.empty()) parts[changes_part] = history.bytes();
-        if (c.insertions == nullptr || !c.insertions->is_restarted()) return;
-        io::Archive a;
-        c.insertions->transfer_bases(a);
-        parts[insertions_part] = a.bytes();
+        const auto add = [&](bool has_part, const char* part, const auto& write) {
+            if (!has_part) return;
+            io::Archive a;
+            write(a);
+            parts[part] = a.bytes();
+        };
+        add(c.stages != nullptr, stages_part, [&](io::Archive& a) { c.stages->transfer(a); });
+        add(grows_groups(), groups_part, [&](io::Archive& a) { c.groups->transfer(a); });
+        add(c.insertions != nullptr && c.insertions->is_restarted(), insertions_part,
+            [&](io::Archive& a) { c.insertions->transfer_bases(a); });
     }
     void read_parts(const io::Sinks<CaseSetup>::Saved& parts, const std::string& file)
     {
         if (const auto at = parts.find(changes_part); at != parts.end()) history.read(at->second, file);
-        if (const auto at = parts.find(insertions_part); at != parts.end() && c.insertions != nullptr) {
-            io::Archive a(at->second, file);
-            c.insertions->transfer_bases(a);
-            a.end();
-        }
+        if (c.insertions != nullptr && parts.contains(insertions_part))
+            read_part(parts, insertions_part, file, [&](io::Archive& a) { c.insertions->transfer_bases(a); });
+        if (grows_groups())
+            read_part(parts, groups_part, file, [&](io::Archive& a) { c.groups->transfer(a); });
+        if (c.stages == nullptr) return;
+        read_part(parts, stages_part, file, [&](io::Archive& a) { c.stages->transfer(a); });
+        c.stages->resume(c);
     }
+    bool grows_groups() const { return c.groups != nullptr && c.insertions != nullptr; }
     void transfer_insertions(io::Archive& a) const
     {
         if (c.insertions != nullptr) c.insertions->transfer(a);
@@ -425,6 +485,8 @@ private:
             s["insertions"] = all;
         }
         if (!history.all.empty()) s["changes"] = history.summary();
+        if (c.stages != nullptr) s["stages"] = c.stages->summary(w.t());
+        if (c.groups != nullptr) s["groups"] = c.groups->names;
         s["kinetic_energy"] = w.kinetic_energy();
         s["watch"] = watch_summary(w.watch());
         s["files"] = sinks.files();

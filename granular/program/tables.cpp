@@ -14,7 +14,8 @@ namespace {
 class Tables final : public Sink {
 public:
     explicit Tables(const CaseSetup& run)
-        : world(*run.c.world), directory(run.directory), with_contacts(run.options.contains("--contacts"))
+        : c(run.c), world(*run.c.world), directory(run.directory),
+          with_contacts(run.options.contains("--contacts"))
     {}
 
     long interval() const override { return std::numeric_limits<long>::max(); }
@@ -22,7 +23,7 @@ public:
     void close() override
     {
         io::write_file(directory + "/particles.csv",
-                       [&](const io::Append& append) { particles_csv(world, append); });
+                       [&](const io::Append& append) { particles_csv(world, append, c.groups.get()); });
         if (with_contacts)
             io::write_file(directory + "/contacts.csv",
                            [&](const io::Append& append) { contacts_csv(world, append); });
@@ -34,6 +35,7 @@ public:
     }
 
 private:
+    const Case& c;
     const World& world;
     const std::string& directory;
     const bool with_contacts;

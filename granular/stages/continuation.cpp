@@ -3,6 +3,7 @@
 
 #include "granular/case/continued_case.hpp"
 #include "granular/stages/case_changes.hpp"
+#include "granular/stages/stages.hpp"
 #include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
@@ -34,15 +35,32 @@ io::JsonSource identity_of(const io::JsonSource& source)
     return io::JsonSource(identity(source), "", most_of_case);
 }
 
-/// Throws io::IoError for the first change that is not possible.
-void check_possible(const std::vector<CaseChange>& changes, const std::string& directory)
+/// Reads the stages of a case that is ready to run otherwise.
+void add_stages(Case& c, const Environment& environment)
 {
+    if (c.stage_specs.empty()) return;
+    c.stages = std::make_shared<Stages>(c, environment);
+    for (const int b : c.stages->moving()) c.moving.push_back(b);
+    std::sort(c.moving.begin(), c.moving.end());
+    c.moving.erase(std::unique(c.moving.begin(), c.moving.end()), c.moving.end());
+}
+
+/// Throws io::IoError for the first change that is not possible.
+void check_possible(const std::vector<CaseChange>& changes, const std::string& directory, bool has_stages)
+{
+    const auto is_possible = [&](const CaseChange& change) {
+        const auto& at = change.pointer;
+        return change.is_possible() &&
+               (!has_stages || at == "/interval" || at == "/name" || at.ends_with("/note"));
+    };
     for (const CaseChange& change : changes)
-        if (!change.is_possible())
+        if (!is_possible(change))
             throw io::IoError("--resume: " + directory +
                               "/case.json: is another case, or this case with other options; --force "
                               "overwrites it; " +
-                              change.text() + "; " + changeable_entries);
+                              change.text() + "; " +
+                              (has_stages ? "a run with stages can change name, note, end and interval"
+                                          : changeable_entries));
 }
 
 /// The case of `first` with the outputs and parameters of `changed`
@@ -73,6 +91,7 @@ Continuation new_run(const std::string& text, const std::string& file, const Env
 {
     Continuation run{.c = read_case(text, file, environment)};
     run.given = given_text(text, file, run.c);
+    add_stages(run.c, environment);
     return run;
 }
 
@@ -95,19 +114,23 @@ Continuation continued_run(const std::string& text, const std::string& file, con
     Case changed = read_case(present, present_file, of_changed);
     const io::JsonSource before = identity_of(earlier), now = identity_of(changed.source);
     const std::vector<CaseChange> changes = changes_of(before.root, now.root);
-    check_possible(changes, directory);
+    check_possible(changes, directory, !changed.stage_specs.empty());
 
     const std::string new_given = is_edited ? given_text(text, file, changed)
                                   : canonical(given, given_file) == io::written(changed.source.root) ? ""
                                                                                                      : given;
     const bool has_state = io::CheckpointFiles(directory).exist() || exists(directory + "/checkpoint.end");
-    if (!has_state || (changes.empty() && !exists(first_file)))
-        return {.c = read_case(present, present_file, environment), .given = new_given};
+    if (!has_state || (changes.empty() && !exists(first_file))) {
+        Continuation run{.c = read_case(present, present_file, environment), .given = new_given};
+        add_stages(run.c, environment);
+        return run;
+    }
     Environment of_first = environment;
     of_first.settings.clear(), of_first.seed.reset(), of_first.continues = nullptr;
     const std::string of = exists(first_file) ? first_file : case_file;
     Continuation run{.c = merged(read_case(io::read_file(of, most_of_case), of, of_first), changed)};
     run.given = new_given;
+    add_stages(run.c, environment);
     for (const CaseChange& change : changes)
         run.changes.push_back(change.text()), run.pointers.push_back(change.pointer);
     run.changed = std::make_shared<const Case>(std::move(changed));

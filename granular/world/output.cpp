@@ -35,16 +35,18 @@ std::string particles_csv(const World& world)
     return csv;
 }
 
-void particles_csv(const World& world, const io::Append& append_piece)
+void particles_csv(const World& world, const io::Append& append_piece, const Groups* groups)
 {
     const bool orientation = world.has_orientation();
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
-    csv += orientation ? ",e0,e1,e2,e3\n" : "\n";
+    csv += orientation ? ",e0,e1,e2,e3" : "";
+    csv += groups != nullptr ? ",group\n" : "\n";
     world.each_particle([&](const Particle& p) {
         csv += std::to_string(p.id) + ',' + std::to_string(p.material) + ',';
         io::append_number(csv, p.radius);
         append(csv, p.r), append(csv, p.v), append(csv, p.omega);
         for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', io::append_number(csv, p.e[k]);
+        if (groups != nullptr) csv += ',' + std::to_string(groups->of(p.id));
         csv += '\n';
         pass_on_full(csv, append_piece);
     });
@@ -66,7 +68,7 @@ void contacts_csv(const World& world, const io::Append& append_piece)
     append_piece(csv);
 }
 
-void particles_vtp(const World& world, const io::Append& append_piece)
+void particles_vtp(const World& world, const io::Append& append_piece, const Groups* groups)
 {
     io::VtkPolyData file({{"NumberOfPoints", world.count()}});
     const auto array = [&]<class Number>(const char* name, int components, Number, const auto& value) {
@@ -86,6 +88,8 @@ void particles_vtp(const World& world, const io::Append& append_piece)
     if (world.has_orientation()) array("orientation", 4, double{}, [](const Particle& p) { return p.e; });
     array("material", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.material}; });
     array("id", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.id}; });
+    if (groups != nullptr)
+        array("group", 1, std::int32_t{}, [&](const Particle& p) { return std::array{groups->of(p.id)}; });
     file.section("Points");
     array("Points", 3, double{}, [&](const Particle& p) { return three(p.r); });
     file.write(append_piece);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/case/groups.hpp"
 #include "granular/world/world.hpp"
 #include "io/files.hpp"
 
@@ -11,13 +12,13 @@ namespace hilda::granular {
 /// One line per particle, ordered by id: id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z, and
 /// e0,e1,e2,e3 if the world integrates orientations. SI units, global frame.
 std::string particles_csv(const World& world);
-/// The same in pieces of about 1 MiB
-void particles_csv(const World& world, const io::Append& append);
+/// The same in pieces of about 1 MiB. With `groups` there is the column group, -1 for particles without one.
+void particles_csv(const World& world, const io::Append& append, const Groups* groups = nullptr);
 /// One line per contact: i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz. See ContactRecord.
 void contacts_csv(const World& world, const io::Append& append);
 /// The particles as points with radius, velocity, angular velocity, material, id and, if integrated,
-/// orientation. VTK XML PolyData with raw appended data, in pieces.
-void particles_vtp(const World& world, const io::Append& append);
+/// orientation, and with `groups` group. VTK XML PolyData with raw appended data, in pieces.
+void particles_vtp(const World& world, const io::Append& append, const Groups* groups = nullptr);
 
 /// Love-Weber stress of the contacts over a volume V [m³]:
 ///

@@ -47,16 +47,16 @@ EVERYTHING = {
                    {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": ["0.1*sin(t)", 0, 1.5], "omega": [0, 0, 0],
                     "mass": 2, "inertia": 1e-3, "free": [False, False, True], "F": [0, 0, "-min(t,1)"], "material": "steel"}],
     "particles": [{"r": [0, 0, 0], "radius": 0.05, "material": "glass", "v": [0, 0, 1], "omega": [1, 0, 0], "fixed": False,
-                   "force": [0, 1, 0], "replica": 0, "orientation": [0.6, 0, 0, -0.8]}],
+                   "force": [0, 1, 0], "replica": 0, "group": "ball", "orientation": [0.6, 0, 0, -0.8]}],
     "fill": [{"type": "lattice", "low": [0, 0, 0.2], "high": [0.3, 0.3, 0.5], "radius": 0.05, "least_radius": 0.04,
-              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "v": [0, 0, 0], "random_v": 0.1},
+              "spacing": 1.1, "jitter": 0.5, "count": 5, "seed": 2, "material": "steel", "group": "bed", "v": [0, 0, 0], "random_v": 0.1},
              {"type": "hcp", "low": [-0.6, 0.2, 0.2], "high": [-0.4, 0.4, 0.5], "material": "steel",
               "sizes": {"type": "lognormal", "median": 0.02, "deviation": 0.1, "least_radius": 0.015, "largest_radius": 0.03,
                         "by": "mass"}},
              {"type": "lattice", "low": [-0.2, -0.8, 0.2], "high": [0.2, -0.6, 0.5], "material": "steel",
               "sizes": {"type": "table", "radii": [0.02, 0.03], "passing": [0, 1]}}],
     "insert": [{"name": "feed", "rate": 1e4, "from": 0, "to": 1, "interval": 1e-5, "radius": 0.02, "least_radius": 0.01, "v": [0, 0, -1],
-                "random_v": 0.1, "material": "glass", "replica": 0, "on_overlap": "postpone", "tries": 1000, "seed": 3, "count": 50, "active": True,
+                "random_v": 0.1, "material": "glass", "replica": 0, "on_overlap": "postpone", "tries": 1000, "seed": 3, "count": 50, "active": True, "group": "fed",
                 "region": {"type": "cylinder", "r": [0, 0, 0.7], "axis": [0, 0, 1], "radius": 0.3, "length": 0.2}},
                {"mass_rate": 20, "material": "steel", "sizes": {"type": "uniform", "least_radius": 0.01, "largest_radius": 0.02},
                 "region": {"type": "disk", "r": [0, 0, 1], "normal": [0, 0, 1], "radius": 0.2}},
@@ -65,7 +65,11 @@ EVERYTHING = {
     "fields": [{"name": "slice", "low": [-1, -1, -1], "high": [3, 2, 3], "cells": [4, 1, 5], "kernel": "lucy", "width": 0.2,
                 "values": "averages", "edges": "closed", "interval": 0.4, "samples": 2, "replica": 0},
                {"low": [0, 0, 0], "high": [1, 1, 1], "cells": [1, 1, 1], "width": 0.1, "values": "points", "interval": 1e-5}],
-    "contacts": {"interval": 1e-5, "times": [0, 2e-5], "network": True}, "loads": {"interval": 0.4, "samples": 2}}
+    "contacts": {"interval": 1e-5, "times": [0, 2e-5], "network": True}, "loads": {"interval": 0.4, "samples": 2},
+    "stages": [{"name": "settle", "duration": 1e-5, "until": {"kinetic_energy": 1e-9, "share": 1e-4, "from": 1e-5, "interval": 1e-5},
+                "on_timeout": "warn"},
+               {"name": "load", "end": 0.5, "set": {"/boundaries/lid/F": [0, 0, "-t"], "/laws/0/mu": 0.2, "/insert/feed/active": False},
+                "remove": ["ball"]}]}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/stages/stages.hpp"
+
+#include "granular/case/continued_case.hpp"
+#include "granular/stages/case_changes.hpp"
+#include "granular/stages/take_over.hpp"
+#include "io/archive.hpp"
+#include "io/message.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace hilda::granular {
+
+namespace {
+
+constexpr const char* changeable_in_stage =
+    "a stage can set /gravity; r, v, omega, F and T of boundaries; the numbers of laws; and rate, mass_rate, "
+    "to, "
+    "v, random_v and active of insertions";
+
+/// The pointer with the indices of boundaries and insertions in place of their names
+std::string with_indices(const io::Json& root, const std::string& pointer)
+{
+    for (const std::string key : {"boundaries", "insert"}) {
+        const std::string start = '/' + key + '/';
+        const io::Json::Member* entries = root.member(key);
+        if (!pointer.starts_with(start) || entries == nullptr || entries->value.list() == nullptr) continue;
+        const std::size_t end = std::min(pointer.find('/', start.size()), pointer.size());
+        const std::string name = pointer.substr(start.size(), end - start.size());
+        for (std::size_t k = 0; k < entries->value.size(); ++k) {
+            const io::Json::Member* found = entries->value.at(k).member("name");
+            if (found != nullptr && found->value.string() != nullptr && *found->value.string() == name)
+                return start + std::to_string(k) + pointer.substr(end);
+        }
+    }
+    return pointer;
+}
+
+/// "POINTER: WHAT" of a message "FILE:LINE:COLUMN (POINTER): WHAT (from ORIGIN)"
+std::string without_place(const std::string& message, const std::string& origin)
+{
+    const std::size_t open = message.find(" ("), close = message.find("): ", open);
+    if (open == std::string::npos || close == std::string::npos) return message;
+    std::string what = message.substr(close + 3);
+    if (const std::string end = " (from " + origin + ")"; what.ends_with(end))
+        what.resize(what.size() - end.size());
+    if (what.starts_with(origin + ": ")) what.erase(0, origin.size() + 2);
+    return message.substr(open + 2, close - open - 2) + ": " + what;
+}
+
+bool is_of_stage(const CaseChange& change)
+{
+    return change.is_possible() &&
+           (change.pointer.starts_with("/boundaries/") || change.pointer.starts_with("/laws/") ||
+            change.pointer.starts_with("/insert/") || change.pointer == "/gravity");
+}
+
+}  // namespace
+
+Stages::Stages(const Case& c, const Environment& environment) : spec(c.stage_specs), h(c.h)
+{
+    Environment here = environment;
+    here.settings.clear(), here.seed.reset(), here.continues = nullptr, here.with_particles = false;
+    io::JsonSource source = c.source;
+    for (std::size_t k = 0; k < spec.size(); ++k) {
+        const std::string place = "/stages/" + std::to_string(k) + "/set",
+                          origin = "stage '" + spec[k].name + '\'';
+        Parameters& now = parameters.emplace_back();
+        if (spec[k].set.empty()) continue;
+        try {
+            const io::JsonSource before(io::written(source.root), "", std::size_t{1} << 28);
+            for (const auto& [name, value] : spec[k].set) {
+                now.pointers.push_back(with_indices(source.root, name));
+                source.set(now.pointers.back() + '=' + io::written(value), origin);
+            }
+            const io::JsonSource after(io::written(source.root), "", std::size_t{1} << 28);
+            for (const CaseChange& change : changes_of(before.root, after.root))
+                if (!is_of_stage(change))
+                    c.source.fail(place,
+                                  change.pointer + " cannot be set by a stage; " + changeable_in_stage);
+            now.c = std::make_shared<const Case>(read_case(source, here));
+            Case checked = read_case(c.source, here);
+            take_over(checked, *now.c, now.pointers);  // the laws
+        } catch (const io::PlacedError& e) {
+            const std::string what = e.what();
+            if (what.find("(" + place + ")") != std::string::npos) throw;
+            c.source.fail(place, without_place(what, origin));
+        }
+    }
+}
+
+void Stages::each_step_limit(World& w,
+                             const std::function<void(const std::string&, const World::StepLimits&)>& f) const
+{
+    const std::vector<PairLaw> laws = w.all_laws();
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+        if (parameters[k].c == nullptr) continue;
+        w.set_laws(parameters[k].c->world->all_laws());
+        f("/stages/" + std::to_string(k) + "/set", w.step_limits());
+    }
+    w.set_laws(laws);
+}
+
+std::vector<int> Stages::moving() const
+{
+    std::vector<int> all;
+    for (const Parameters& p : parameters)
+        if (p.c != nullptr) all.insert(all.end(), p.c->moving.begin(), p.c->moving.end());
+    return all;
+}
+
+long Stages::steps_in(double time) const { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
+
+void Stages::begin_run(Case& c) { begin(c); }
+
+/// Begins the next stage at the present instant.
+void Stages::begin(Case& c)
+{
+    const std::size_t k = log.size();
+    log.push_back({.start = c.world->steps()});
+    largest_energy = 0;
+    if (parameters[k].c != nullptr) {
+        take_over(c, *parameters[k].c, parameters[k].pointers, c.world->t());
+        begin_change(c, *parameters[k].c, parameters[k].pointers);
+    }
+    if (!spec[k].remove.empty()) {
+        std::vector<std::uint32_t> ids;
+        c.world->each_particle([&](const Particle& p) {
+            const int group = c.groups->of(p.id);
+            if (group != Groups::none &&
+                std::find(spec[k].remove.begin(), spec[k].remove.end(),
+                          c.groups->names[static_cast<std::size_t>(group)]) != spec[k].remove.end())
+                ids.push_back(p.id);
+        });
+        c.world->remove(ids);
+    }
+}
+
+void Stages::resume(Case& c) const
+{
+    for (std::size_t k = 0; k < log.size(); ++k)
+        if (parameters[k].c != nullptr)
+            take_over(c, *parameters[k].c, parameters[k].pointers, static_cast<double>(log[k].start) * h);
+}
+
+/// Whether the condition of the present stage is met. It is evaluated at some instants only.
+bool Stages::is_at_rest(const World& w)
+{
+    const RestCondition& rest = *what().until;
+    const long since = w.steps() - log.back().start, interval = steps_in(rest.interval);
+    if (since == 0 || since % interval != 0) return false;
+    const double energy = w.kinetic_energy(),
+                 number = static_cast<double>(std::max<std::size_t>(1, w.count()));
+    largest_energy = std::max(largest_energy, energy);
+    if (static_cast<double>(since) * h < rest.from * (1 - 1e-12)) return false;
+    return (!rest.kinetic_energy || energy / number <= *rest.kinetic_energy) &&
+           (!rest.share || energy <= *rest.share * largest_energy);
+}
+
+void Stages::update(Case& c, const std::function<void(const std::string&)>& warn)
+{
+    const World& w = *c.world;
+    while (!is_over) {
+        const StageSpec& s = what();
+        const long since = w.steps() - log.back().start;
+        const bool rests = s.until && is_at_rest(w);
+        const bool is_late =
+            (s.duration && since >= steps_in(*s.duration)) || (s.end && w.steps() >= steps_in(*s.end));
+        if (!rests && !is_late) return;
+        if (!rests && s.until) {
+            const std::string message = io::formatted(
+                "stage '%s': its condition is not met until t = %.9g s, after %.9g s: the kinetic energy is "
+                "%.3g J of "
+                "%zu particles, %.3g of the largest one in the stage",
+                s.name.c_str(), w.t(), static_cast<double>(since) * h, w.kinetic_energy(), w.count(),
+                largest_energy > 0 ? w.kinetic_energy() / largest_energy : 1.);
+            if (s.fails) throw StageFailed("stage_timeout", message);
+            warn(message);
+        }
+        const Part before = log.back();
+        log.back().end = w.steps(), log.back().reason = rests ? condition : duration;
+        if (is_last()) {
+            is_over = true;
+            return;
+        }
+        try {
+            begin(c);
+        } catch (const io::PlacedError& e) {
+            log.pop_back();
+            log.back() = before;
+            throw StageFailed("stage_motion", e.what());
+        }
+    }
+}
+
+void Stages::transfer(io::Archive& a)
+{
+    a.list(log);
+    a.check(!log.empty() && log.size() <= spec.size(),
+            "invalid number of stages, got " + std::to_string(log.size()));
+    a.check_each(
+        log, "invalid stage",
+        [](const Part& p) {
+            return p.start >= 0 && p.end >= 0 && p.reason >= running && p.reason <= duration;
+        },
+        [](const Part& p) { return std::to_string(p.start) + " to " + std::to_string(p.end); });
+    a.value(largest_energy);
+    a.check(std::isfinite(largest_energy), "the kinetic energy of a stage must be finite");
+    std::uint64_t over = is_over ? 1 : 0;
+    a.value(over);
+    a.check(over <= 1, "invalid end of the stages");
+    is_over = over != 0;
+}
+
+io::Json Stages::summary(double t) const
+{
+    // without the rounding error of the product
+    const auto rounded = [](double time) { return std::strtod(io::formatted("%.12g", time).c_str(), nullptr); };
+    constexpr const char* reasons[] = {"end of the run", "condition", "duration"};
+    io::Json all = io::Json::array();
+    for (std::size_t k = 0; k < log.size(); ++k)
+        all.push_back({{"name", spec[k].name},
+                       {"start", rounded(static_cast<double>(log[k].start) * h)},
+                       {"end", rounded(log[k].reason == running ? t : static_cast<double>(log[k].end) * h)},
+                       {"reason", reasons[log[k].reason]}});
+    return all;
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The stages of a run: each changes parameters of the case at its start and ends at a time or when the
+/// particles are at rest.
+
+#pragma once
+
+#include "granular/case/case_file.hpp"
+
+namespace hilda::granular {
+
+/// A stage has reached its largest duration and its condition is not met (stage_timeout), or a boundary is
+/// not at the place where its formula in the next stage begins (stage_motion).
+class StageFailed : public io::NumericalFailure {
+public:
+    using NumericalFailure::NumericalFailure;
+};
+
+/// What is decided is a function of the state of the world between two steps, so that neither rows nor
+/// interruptions change it.
+class Stages {
+public:
+    /// Reads the parameters of all stages of a case. Throws io::PlacedError with the place of the stage.
+    Stages(const Case& c, const Environment& environment);
+
+    /// Begins the first stage, at the initial state.
+    void begin_run(Case& c);
+    /// Ends the present stage before a step if it is over, and begins the next one. `warn` receives the
+    /// message of a condition that is not met in time. Throws StageFailed.
+    void update(Case& c, const std::function<void(const std::string&)>& warn);
+    /// Whether the last stage is over, and with it the run
+    bool have_ended() const { return is_over; }
+    long number() const { return static_cast<long>(log.size()) - 1; }  ///< of the present stage
+    const StageSpec& what() const { return spec[log.size() - 1]; }
+    bool is_last() const { return log.size() == spec.size(); }
+
+    /// Calls f(JSON pointer, limits of the step with the laws of the stage) for each stage that sets laws.
+    void each_step_limit(World& w,
+                         const std::function<void(const std::string&, const World::StepLimits&)>& f) const;
+    /// Boundaries that move in a stage
+    std::vector<int> moving() const;
+
+    /// Writes or reads the state.
+    void transfer(io::Archive& a);
+    /// After transfer() has read: gives the world the parameters of the present stage.
+    void resume(Case& c) const;
+    /// Start, end and the reason of the end of each stage that has begun
+    io::Json summary(double t) const;
+
+private:
+    enum Reason : std::int64_t { running, condition, duration };
+    struct Part {
+        std::int64_t start = 0, end = 0;  ///< [steps]
+        std::int64_t reason = running;
+    };
+    struct Parameters {
+        std::vector<std::string> pointers;
+        std::shared_ptr<const Case> c;  ///< without particles; nullptr if the stage sets nothing
+    };
+
+    void begin(Case& c);
+    bool is_at_rest(const World& w);
+    long steps_in(double time) const;
+
+    std::vector<StageSpec> spec;
+    std::vector<Parameters> parameters;
+    double h;  ///< [s]
+    std::vector<Part> log;
+    double largest_energy = 0;  ///< kinetic, of the present stage [J]
+    bool is_over = false;
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stages of a run of hilda-granular: their ends, their changes against closed forms, one result with interruptions, and errors.
+Groups of particles: their table, columns and removal.
+
+    stages_test.py PROGRAM
+"""
+import csv
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+
+from case_runs import CASE, Runs, expect
+
+GRAIN = {"radius": 1e-3, "material": "glass"}
+FLOOR = {"name": "floor", "type": "plane", "normal": [0, 0, 1], "material": "steel"}
+# Grains settle in a cup, a part of them is removed, the floor shakes, and others are inserted
+RUN = dict(end=0.1, interval=1e-3, frame_interval=5e-3,
+           boundaries=[dict(FLOOR), dict(CASE["boundaries"][1], omega=[0, 0, 0])],
+           particles=[dict(GRAIN, r=[0.01, 0.01, 0.045], group="ball")],
+           fill=[dict(CASE["fill"][0], random_v=0, group="bed"),
+                 {"type": "lattice", "low": [0.006, 0.006, 0.032], "high": [0.014, 0.014, 0.036], "radius": 1e-3, "material": "glass",
+                  "group": "lid"}],
+           insert=[{"name": "feed", "rate": 2000, "active": False, "v": [0, 0, -0.5], "radius": 5e-4, "material": "glass", "group": "fed",
+                    "region": {"type": "box", "low": [0.005, 0.005, 0.06], "high": [0.015, 0.015, 0.07]}}],
+           stages=[{"name": "settle", "duration": 0.06, "until": {"share": 0.3, "from": 0.01, "interval": 5e-4}},
+                   {"name": "shake", "duration": 0.008, "remove": ["lid"],
+                    "set": {"/boundaries/floor/r": [0, 0, "1e-4*sin(2*pi*100*t)"], "/boundaries/wall/omega": [0, 0, "50*t"],
+                            "/laws/0/mu": 0.05, "/insert/feed/active": True}},
+                   {"name": "tilt", "duration": 0.006, "set": {"/gravity": [3, 0, -9.81], "/insert/feed/active": False,
+                                                             "/boundaries/floor/r": [0, 0, 0], "/boundaries/wall/omega": [0, 0, -2]}}])
+
+
+def table(runs, output, name="run.csv"):
+    with open(runs.folder / output / name, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def content(runs, output):
+    """All output that does not depend on wall time, with the state at the end"""
+    return runs.sha(output), (runs.folder / output / "checkpoint.end").read_bytes()
+
+
+def one_result(runs):
+    """The stages with 1 and 2 threads, and with interruptions in each of them"""
+    case = runs.case("cup", **RUN)
+    runs.finish(case, "--output", "whole")
+    whole = content(runs, "whole")
+    summary = runs.summary("whole")
+    stages = summary["stages"]
+    expect([stage["name"] for stage in stages] == ["settle", "shake", "tilt"]
+           and [stage["reason"] for stage in stages] == ["condition", "duration", "duration"], f"{stages}")
+    expect(0.0105 <= stages[0]["end"] < 0.06 and abs(stages[1]["end"] - stages[0]["end"] - 0.008) < 1e-9
+           and abs(summary["counters"]["t"] - stages[0]["end"] - 0.014) < 1e-9 and summary["status"] == "ok", f"{stages}")
+    rows = table(runs, "whole")
+    for row in rows:
+        t = float(row["t"])
+        number = sum(t > stage["start"] + 1e-9 for stage in stages[1:])
+        expect(int(row["stage"]) == number, f"a row at the begin of a stage is that of the one before: {row['t']}, {row['stage']}")
+    groups = table(runs, "whole", "groups.csv")
+    names = summary["groups"]
+    expect(names == ["ball", "bed", "lid", "fed"], f"{names}")
+    for row in rows:
+        of = [group for group in groups if group["t"] == row["t"]]
+        expect([group["name"] for group in of] == names, f"a row for each group: {of}")
+        expect(sum(int(group["particles"]) for group in of) == int(row["particles"]), "each particle is in one group")
+        energy = sum(float(group["kinetic_energy"]) for group in of)
+        expect(abs(energy - float(row["kinetic_energy"])) <= 1e-7 * energy, f"energy of the groups: {energy}, {row['kinetic_energy']}")
+        lid = int(of[2]["particles"])
+        expect(lid == (9 if row["stage"] == "0" else 0) and int(row["removed"]) == 9 - lid, f"the lid: {of[2]} {row['removed']}")
+    removed = table(runs, "whole", "outflow.csv")
+    expect(len(removed) == 9 and {row["side"] for row in removed} == {"removed"}
+           and all(abs(float(row["t"]) - stages[0]["end"]) < 1e-12 for row in removed), f"outflow.csv: {removed[:2]}")
+    fed = {row["t"]: int(row["inserted"]) for row in rows}
+    expect(max(fed[row["t"]] for row in rows if row["stage"] == "0") == 0, f"the insertion begins with its stage: {fed}")
+    expect(10 <= max(fed.values()) <= 17 and max(fed.values()) == fed[rows[-1]["t"]], f"the rate in its stage: {fed}")
+    ids = {row["group"] for row in table(runs, "whole", "particles.csv")}
+    expect(ids == {"0", "1", "3"}, f"column group: {ids}")
+
+    runs.finish(case, "--output", "threads", "--threads", "2")
+    expect(content(runs, "threads") == whole, "2 threads give the same files")
+    seconds = summary["timing"]["wall_seconds"]
+    for which in (signal.SIGINT, signal.SIGKILL):
+        parts, in_stages = 0, set()
+        while True:
+            process = runs.start(case, "--output", "cut", "--resume", "--checkpoint", "1e-3", "--threads", str(1 + parts % 2))
+            try:
+                process.communicate(timeout=0.1 + max(0.1, seconds / 8) * (1 + parts / 5))
+                expect(process.returncode == 0, f"ended with {process.returncode}")
+                break
+            except subprocess.TimeoutExpired:
+                process.send_signal(which)
+                process.communicate()
+                parts += 1
+                if (runs.folder / "cut" / "run.csv").exists() and table(runs, "cut"):
+                    in_stages.add(table(runs, "cut")[-1]["stage"])
+                expect(parts < 100, "the run comes to its end")
+        expect(parts > 1, f"{parts} interruptions")
+        expect(content(runs, "cut") == whole, f"{parts} interruptions by signal {which} in the stages {in_stages} give the same files")
+        runs.remove("cut")
+    # at the ends of the stages to a step: a run to an earlier end, and its continuation
+    for at in (stages[0]["end"] - 5e-6, stages[0]["end"], stages[0]["end"] + 5e-6, stages[1]["end"], stages[1]["end"] + 5e-6):
+        runs.finish(case, "--output", "cut", "--end", f"{at:.9g}")
+        runs.finish(case, "--output", "cut", "--resume", "--end", "0.1")
+        expect(content(runs, "cut")[1] == whole[1], f"a run continued at {at} has the same state")
+        expect(table(runs, "cut") == rows, f"a run continued at {at} has the same rows")
+        runs.remove("cut")
+    expect("the run is complete already" in runs.finish(case, "--output", "whole", "--resume"), "a complete run")
+    err = runs.finish(case, "--output", "whole", "--resume", "--end", "0.2", "--set", "/laws/0/mu=0.2", code=5)
+    expect("/laws/0/mu was 0.3 and is 0.2 now; a run with stages can change name, note, end and interval" in err, f"{err}")
+
+
+def closed_forms(runs):
+    """Gravity and motions of stages, with the time since their start"""
+    space = dict(particles=[dict(GRAIN, r=[0.01, 0.01, 0.05])], fill=[], interval=1e-3, end=1)
+    case = runs.case("free", **space, boundaries=[FLOOR], stages=[
+        {"name": "fall", "duration": 0.01}, {"name": "up", "end": 0.03, "set": {"/gravity": [0, 0, 5], "/boundaries/floor/v": [0, 0, "-2*t"]}},
+        {"name": "on", "duration": 0.01, "set": {"/boundaries/0/v": [0, 0, 0.01]}}])
+    runs.finish(case, "--output", "free")
+    grain, row = table(runs, "free", "particles.csv")[0], table(runs, "free")[-1]
+    expect(abs(float(grain["vz"]) - (-9.81 * 0.01 + 5 * 0.03)) < 1e-7, f"gravity: {grain}")
+    expect(abs(float(row["floor_z"]) - (-0.02 ** 2 + 0.01 * 0.01)) < 1e-12 and row["t"] == "0.04", f"the floor: {row}")
+    # the friction coefficient of a stage: deceleration of a sliding grain without rotation of its material
+    slide = runs.case("slide", particles=[dict(GRAIN, r=[0.005, 0.01, 9.99e-4], v=[0.2, 0, 0])], fill=[], boundaries=[FLOOR], interval=1e-3,
+                      end=0.02, stages=[{"name": "rough", "duration": 0.005},
+                                        {"name": "smooth", "set": {"/laws/1/mu": 0, "/laws/1/rolling": {"law": "epsd", "mu_r": 0, "eta_r": 0}}}])
+    runs.finish(slide, "--output", "slide")
+    speed = [float(row["momentum_x"]) for row in table(runs, "slide")]
+    expect(speed[5] < 0.97 * speed[0] and abs(speed[-1] - speed[5]) < 1e-6 * speed[0], f"friction: {speed[0]}, {speed[5]}, {speed[-1]}")
+
+
+def timeouts(runs):
+    """A condition that is not met in time, and runs that end before their last stage"""
+    until = {"kinetic_energy": 1e-30, "interval": 1e-3}
+    stages = [{"name": "settle", "duration": 0.002, "until": until}, {"name": "next", "duration": 1e-3}]
+    case = runs.case("late", **dict(RUN, stages=stages))
+    err = runs.finish(case, "--output", "late")
+    message = "stage 'settle': its condition is not met until t = 0.002 s, after 0.002 s: the kinetic energy is "
+    expect(f"hilda: warning: {message}" in err and runs.summary("late")["counters"]["t"] == 0.003, f"{err}")
+    expect(runs.summary("late")["stages"][0]["reason"] == "duration", "the reason")
+    case = runs.case("fails", **dict(RUN, stages=[dict(stages[0], on_timeout="fail"), stages[1]]))
+    for resume in ((), ("--resume",)):
+        runs.refused(case, 4, r"\[stage_timeout\]: " + message, "--output", "fails", *resume)
+    expect(runs.summary("fails")["status"] == "stage_timeout" and runs.summary("fails")["counters"]["t"] == 0.002, "status")
+    case = runs.case("short", **dict(RUN, end=0.001, stages=stages))
+    err = runs.finish(case, "--output", "short")
+    expect("hilda: warning: the run has ended in stage 'settle', before its last stage" in err, f"{err}")
+    jump = [{"name": "first", "duration": 1e-3}, {"name": "second", "set": {"/boundaries/floor/r": [0, 0, "1e-3*(1+t)"]}}]
+    runs.refused(runs.case("jump", **dict(RUN, stages=jump)), 4, r"\[stage_motion\]: .*the formula must begin at the place of the boundary",
+                 "--output", "jump")
+
+
+def errors(runs):
+    """Wrong entries: exit code 3 with their place"""
+    def refused(pointer, message, *stages, **changes):
+        case = runs.case("wrong", **dict(RUN, stages=list(stages), **changes))
+        runs.refused(case, 3, rf"wrong.json:1:\d+ \({pointer}\): {message}", "--output", "wrong")
+
+    one = {"name": "one"}
+    for value, message in (({"/laws/0/mu": -1}, "/laws/0/mu: mu must not be negative, got -1$"),
+                           ({"/step": 1e-6}, "/step cannot be set by a stage; a stage can set /gravity;"),
+                           ({"/fill/0/radius": 1e-3, "/materials/0/E": 1}, "/materials/0/E cannot be set by a stage"),
+                           ({"/laws/7/mu": 1}, '/laws: there is no "7" in a list of 2'),
+                           ({"gravity": [0, 0, 0]}, "/: must be /json/pointer=VALUE"),
+                           ({"/boundaries/flor/v": [0, 0, 1]}, '/boundaries: there is no "flor" in a list of 2'),
+                           ({"/laws/1/spin": {"law": "torsional-spring"}}, "/laws/1/spin: the spin law must be that of the run"),
+                           ({"/boundaries/floor/v": [0, 0, "sine(t)"]}, "/boundaries/0/v/2: unknown function 'sine'"),
+                           ({"/end": 3}, "/end cannot be set by a stage"),
+                           ({"/laws/0/nu": 3}, "/laws/0/nu: unknown key .nu.")):
+        refused("/stages/1/set", message, one, {"name": "two", "set": value})
+    refused("/stages/1/remove", "no entry has the group 'lidd'; did you mean 'lid'\\?", one, {"name": "two", "remove": ["lidd"]})
+    refused("/stages/1/name", 'two stages have the same name, got "one"', one, one)
+    refused("/stages/0/end", "end must not be given together with duration", dict(one, duration=1, end=1))
+    refused("/stages/0/on_timeout", "on_timeout is only for a stage with until and a duration or end", dict(one, on_timeout="fail"))
+    refused("/stages/0/until", "one of the keys kinetic_energy and share is required", dict(one, until={}))
+    refused("/stages/0/set", "the stability limit of the step is .* with these laws, the step is 5e-06; --force overrides",
+            {"name": "hard", "set": {"/laws/0/normal": {"law": "hertz"}, "/laws/1/normal/k_n": 1e9}},
+            laws=[CASE["laws"][0], {"between": ["glass", "steel"], "mu": 0.3, "normal": {"law": "hooke", "k_n": 1e3, "gamma_n": 10}}])
+    refused("/particles/0/group", 'group must not contain commas and quotes, because it is in tables, got "a,b"', one,
+            particles=[dict(GRAIN, r=[0.01, 0.01, 0.045], group="a,b")])
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        runs = Runs(sys.argv[1], folder)
+        closed_forms(runs)
+        timeouts(runs)
+        errors(runs)
+        one_result(runs)
+    print("stages: closed forms, time-outs, errors, one result with interruptions; groups and their removal")
+
+
+if __name__ == "__main__":
+    main()

@@ -144,6 +144,7 @@ std::vector<std::string> files_of(const std::string& study)
         {"granular-drum", {"surface.csv", "grains.csv"}},
         {"granular-low-velocity-cratering", {"motion.csv"}},
         {"granular-oblique", {"reference.csv", "steps.csv", "levers.csv"}},
+        {"granular-repose", {"heaps.csv", "surface.csv", "spheres.csv"}},
         {"granular-shear", {"motion.csv"}},
         {"granular-stacking", {"friction.csv"}},
         {"granular-waves", {"profiles.csv"}},

@@ -48,6 +48,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "benchmarks",
       "case",
       "cases",
+      "clumps",
       "core",
       "core/neighbours",
       "core/surfaces",

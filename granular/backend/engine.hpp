@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/clumps/clump.hpp"
 #include "granular/core/attached.hpp"
 #include "granular/core/integrator.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
@@ -32,6 +33,7 @@ template <class Backend>
 struct Arrays {
     Particles<Backend> particle;
     Pairs<Backend> pairs;
+    par::Array<Backend, ClumpBody> clump;  ///< ordered by the ids of their members
 };
 
 /// Force and torque on a boundary
@@ -66,7 +68,10 @@ public:
     /// See MoveAttached; `poses` by boundary number
     virtual void move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses) = 0;
 
-    /// See Neighbours::find.
+    /// The shapes of the clumps in arrays(), and the clumps of the particles
+    virtual void set_clumps(const Domain& domain, const ClumpTables& tables) = 0;
+
+    /// See Neighbours::find. Throws LeftDomain for a clump whose centre of mass is outside the domain.
     virtual void find_neighbours(const Domain& domain) = 0;
     /// See find_loads. Without `store`, the CPU computes only the loads of the pairs of SweepPlan::list here,
     /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other

@@ -181,11 +181,20 @@ public:
                          p.velocity.data(), p.omega.data(), p.compensation.data()});
     }
 
+    void set_clumps(const Domain& domain, const ClumpTables& tables) override
+    {
+        send(clump_shape, tables.shape), send(clump_sphere, tables.sphere), send(clump_of, tables.of);
+        clump_reach = tables.reach;
+        list_members(domain);
+    }
+
     void find_neighbours(const Domain& domain) override
     {
         host_is_current = false;
-        const bool new_lists =
-            blocks.update(domain.grid, double{domain.largest} + domain.skin, last_boundaries, *meshes);
+        assign_clumps(domain);
+        // The members of clumps may be outside the domain by their distance from the centre of mass.
+        const bool new_lists = blocks.update(domain.grid, double{domain.largest} + domain.skin + clump_reach,
+                                             last_boundaries, *meshes);
         BoundaryBlockView near = blocks.view();
         if constexpr (!is_cpu) {
             if (new_lists) resting.send(*this, blocks.resting), moving.send(*this, blocks.moving);
@@ -197,9 +206,11 @@ public:
                          .surfaces = surfaces(),
                          .near = near,
                          .rotation_laws = rotation_laws,
-                         .internal = internal},
+                         .internal = internal,
+                         .clump_of = clump_of.size() > 0 ? clump_of.data() : nullptr},
                         own.particle, own.pairs);
         find_attached();
+        list_members(domain);
         plan.reset();
         free_pairs = 0;
         if (any_free)
@@ -263,13 +274,14 @@ public:
                                  .torque = rotation_laws ? own.pairs.torque.data() : nullptr,
                                  .force = force.size() > 0 ? force.data() : nullptr,
                                  .id = p.id.data(),
-                                 .step = step};
-        if constexpr (is_cpu) {
-            if (step.part == Part::before_loads) return advance_before_loads(on, p.count, arrays);
-            return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, p.count);
-        } else {
-            return granular::advance(on, p.count, arrays);
-        }
+                                 .step = step,
+                                 .total = particle_loads.data()};
+        const float of_particles = advance_particles(arrays);
+        if (own.clump.size() == 0) return of_particles;
+        // The members have been advanced as particles of their own. They are placed again.
+        return par::nan_max(of_particles, par::largest(on, static_cast<std::uint32_t>(own.clump.size()),
+                                                       AdvanceClump{members(), own.clump.data(),
+                                                                    particle_loads.data(), step}));
     }
 
     float largest_displacement() override
@@ -349,7 +361,8 @@ public:
                                    .force = force.size() > 0 ? force.data() : nullptr,
                                    .id = p.id.data(),
                                    .count = p.count,
-                                   .out = particle_blocks.data()},
+                                   .out = particle_blocks.data(),
+                                   .clumps = clump_view()},
                       serial_blocks);
         return total(particle_blocks, host_particle_blocks);
     }
@@ -371,7 +384,8 @@ public:
                                  .before = velocities_copy.data(),
                                  .s = s,
                                  .count = p.count,
-                                 .out = kinetic_blocks.data()},
+                                 .out = kinetic_blocks.data(),
+                                 .clumps = clump_view()},
                       serial_blocks);
         return total(kinetic_blocks, host_kinetic_blocks);
     }
@@ -399,7 +413,8 @@ public:
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
                resting.bytes() + moving.bytes() + triangle.bytes() + vertex.bytes() + vertex_normal.bytes() +
                fan_start.bytes() + fan.bytes() + with_triangle.bytes() + triangle_contacts.bytes() +
-               (is_cpu ? meshes->bytes() : 0);
+               (is_cpu ? meshes->bytes() : 0) + own.clump.bytes() + clump_shape.bytes() +
+               clump_sphere.bytes() + clump_of.bytes() + clump_index.bytes() + particle_loads.bytes();
     }
 
 private:
@@ -428,6 +443,60 @@ private:
         if constexpr (is_cpu) return {boundaries.data(), meshes->view()};
         return {boundaries.data(),
                 {triangle.data(), vertex.data(), vertex_normal.data(), fan_start.data(), fan.data()}};
+    }
+
+    float advance_particles(const AdvanceView& arrays)
+    {
+        const std::uint32_t n = own.particle.count;
+        if constexpr (is_cpu) {
+            if (arrays.step.part == Part::before_loads) return advance_before_loads(on, n, arrays);
+            return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, n);
+        } else {
+            return granular::advance(on, n, arrays);
+        }
+    }
+
+    ClumpView clump_view() const
+    {
+        if (clump_of.size() == 0) return {};
+        return {clump_of.data(), own.particle.id.data(), own.clump.data()};
+    }
+
+    MemberView members()
+    {
+        Particles<Backend>& p = own.particle;
+        return {.grid = clump_grid,
+                .shape = clump_shape.data(),
+                .sphere = clump_sphere.data(),
+                .index = clump_index.data(),
+                .position = p.position.data(),
+                .velocity = p.velocity.data(),
+                .omega = p.omega.data(),
+                .compensation = p.compensation.data(),
+                .orientation = p.orientation.data(),
+                .orientation_compensation = p.orientation_compensation.data()};
+    }
+
+    /// Lists the indices of the particles by id, with the order of the particles in the arrays.
+    void list_members(const Domain& domain)
+    {
+        if (clump_of.size() == 0) return;
+        clump_grid = domain.grid;
+        clump_index.resize(clump_of.size()), particle_loads.resize(own.particle.count);
+        par::for_each(on, own.particle.count, ListIds{own.particle.id.data(), clump_index.data()});
+    }
+
+    /// Assigns the clumps to their cells.
+    void assign_clumps(const Domain& domain)
+    {
+        if (own.clump.size() == 0) return;
+        const float outside = par::largest(
+            on, static_cast<std::uint32_t>(own.clump.size()),
+            AssignClumpCell{{domain.grid, nullptr, nullptr, nullptr, nullptr}, own.clump.data()});
+        if (outside == 0) return;
+        ClumpBody one;
+        par::copy_to_host(on, &one, own.clump.data() + static_cast<std::size_t>(outside) - 1, sizeof one);
+        throw LeftDomain{one.first_id};
     }
 
     /// Lists the indices of the attached particles.
@@ -545,6 +614,7 @@ private:
         one(q.in_contact, qf.in_contact), one(q.history, qf.history);
         one(q.rotation_history, qf.rotation_history), one(q.internal, qf.internal);
         p.count = pf.count, q.count = qf.count;
+        one(to.clump, from.clump);
     }
 
     const Backend on = {};
@@ -559,6 +629,12 @@ private:
     par::Array<Backend, AttachedParticle> attached;
     par::Array<Backend, std::uint32_t> attached_index;  ///< see FindAttached
     par::Array<Backend, BoundaryPose> poses;
+    par::Array<Backend, ClumpShape> clump_shape;
+    par::Array<Backend, ClumpSphere> clump_sphere;
+    par::Array<Backend, std::uint32_t> clump_of, clump_index;  ///< see ClumpTables; particles by id
+    par::Array<Backend, Load> particle_loads;                  ///< see AdvanceView::total
+    double clump_reach = 0;
+    CellGrid clump_grid;
     std::vector<Boundary> last_boundaries;
     BoundaryBlocks blocks;  ///< of last_boundaries
     /// Lists of `blocks` in the memory of a GPU

@@ -272,7 +272,8 @@ std::array<double, 9> matrix(ObjectReader& o, const std::string& key)
     return M;
 }
 
-/// One number, three principal moments, or a symmetric matrix of three rows
+}  // namespace
+
 Inertia read_inertia(ObjectReader& o)
 {
     const io::Json* v = o.find("inertia");
@@ -297,8 +298,6 @@ Inertia read_inertia(ObjectReader& o)
                 described(*v));
     return J;
 }
-
-}  // namespace
 
 std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid)
 {

@@ -56,6 +56,10 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary b, double
 /// The keys of read_frustum(). `needs_length`: whether length is required
 std::vector<io::KeySchema> frustum_keys(bool needs_length);
 
+/// Reads the key inertia: one number, three principal moments, or a symmetric matrix of three rows. Throws
+/// io::PlacedError.
+Inertia read_inertia(ObjectReader& o);
+
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
 std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name);

@@ -139,6 +139,7 @@ public:
         sum_parts();
         for (auto& [n, place] : bounds) add_boundary(n, place);
         set_parts();
+        for (ObjectReader& c : o.objects("clumps")) clump(c);
         for (ObjectReader& p : o.objects("particles")) particle(p);
         for (ObjectReader& f : o.objects("fill")) fill_spec(f);
         for (ObjectReader& i : o.objects("insert")) insertion(i);
@@ -428,8 +429,32 @@ private:
         return static_cast<std::uint16_t>(number);
     }
 
+    void clump(ObjectReader& o)
+    {
+        const int number = material(o);
+        const ClumpTemplate t =
+            read_clump(o, *out.world, number, materials[static_cast<std::size_t>(number)]);
+        o.located([&] { out.world->add_template(t); });
+        o.finish();
+    }
+
+    void single_clump(ObjectReader& o)
+    {
+        const Clump c = read_single_clump(o, *out.world, replica(o));
+        const ClumpTemplate& t = out.world->clump_templates()[static_cast<std::size_t>(c.shape)];
+        largest = std::max(largest, 2 * c.scale * t.bounding_radius());
+        const int of = group(o);
+        o.finish();
+        if (!environment.with_particles) return;
+        const std::uint32_t id = o.located([&] { return out.world->add_clump(c); });
+        groups.add(id, of);
+        out.entries.emplace_back(id, o.pointer());
+    }
+
     void particle(ObjectReader& o)
     {
+        if (o.has("clump")) return single_clump(o);
+        if (o.has("scale")) o.fail("scale", "scale is only for a particle with clump");
         Particle p{.r = o.vec3("r"),
                    .radius = o.positive("radius"),
                    .material = material(o),
@@ -456,9 +481,12 @@ private:
 
     void fill_spec(ObjectReader& o)
     {
-        FillSpec spec = read_fill(o);
+        const FilledClumps clumps = read_filled_clumps(o, *out.world);
+        FillSpec spec = read_fill(o, clumps ? std::optional(clumps.radius) : std::nullopt);
+        spec.clumps = clumps;
         const bool from_csv = !spec.particles.empty();
-        spec.material = from_csv && !o.has("material") ? -1 : material(o);
+        if (from_csv && clumps) o.fail("clump", "clump must not be given together with a table");
+        if (!clumps) spec.material = from_csv && !o.has("material") ? -1 : material(o);
         spec.replica = replica(o);
         spec.attached_to = attached_to(o);
         if (!world.orientation)
@@ -502,9 +530,10 @@ private:
     void add_filled(const FillSpec& spec) const
     {
         std::size_t number = 0;
+        Random turns(SplitMix::mixed(spec.seed));
         fill(spec, [&](const Particle& p) {
             try {
-                out.world->add(p);
+                spec.clumps ? out.world->add_clump(spec.clumps.at(p, turns)) : out.world->add(p);
             } catch (const io::InvalidInput& e) {
                 if (spec.file.empty()) throw;
                 throw io::InvalidInput(place_in_table(spec.file, number) + ": " + e.what());

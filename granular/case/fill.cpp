@@ -6,11 +6,11 @@
 
 namespace hilda::granular {
 
-FillSpec read_filled_box(ObjectReader& o)
+FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius)
 {
     FillSpec f;
     f.low = o.vec3("low"), f.high = o.vec3("high");
-    f.sizes = read_radius(o);
+    f.sizes = read_radius(o, radius);
     f.radius = f.sizes.largest();
     const double spacing = o.number("spacing", 1.05);
     if (!(spacing >= 1))
@@ -30,11 +30,11 @@ FillSpec read_filled_box(ObjectReader& o)
     return f;
 }
 
-FillSpec read_fill(ObjectReader& o)
+FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius)
 {
     const std::string name = o.one_of("type", io::Registry<FillType>::names());
     const FillType* const type = io::Registry<FillType>::find(name);
-    FillSpec f = type->read(o);
+    FillSpec f = type->read(o, radius);
     f.type = type;
     return f;
 }
@@ -42,7 +42,8 @@ FillSpec read_fill(ObjectReader& o)
 double estimated_count(const FillSpec& f)
 {
     if (!f.particles.empty()) return static_cast<double>(f.particles.size());
-    return f.type->estimated_count(f, f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius});
+    return f.clumps.spheres *
+           f.type->estimated_count(f, f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius});
 }
 
 void fill(const FillSpec& f, const std::function<void(const Particle&)>& use)

@@ -5,6 +5,7 @@
 
 #include "granular/case/object_reader.hpp"
 #include "granular/case/split_mix.hpp"
+#include "granular/clumps/clump_keys.hpp"
 #include "granular/insertion/sizes.hpp"
 #include "io/type_schema.hpp"
 
@@ -32,14 +33,16 @@ struct FillSpec {
     std::vector<Particle> particles = {};  ///< of the table; empty for the other types
     std::uint64_t checksum = 0;            ///< of the table file
     std::string file = {};                 ///< name of the table file
+    FilledClumps clumps = {};              ///< in place of the particles
 };
 
 /// A type of fill. A file registers it by io::Registry<FillType>::add.
 struct FillType {
     std::string name;  ///< value of the key "type"
     io::TypeSchema schema;
-    /// Reads the keys besides type, material and replica. Throws io::InvalidInput.
-    FillSpec (*read)(ObjectReader& o);
+    /// Reads the keys besides type, material and replica. `radius`: default of the radius [m]. Throws
+    /// io::InvalidInput.
+    FillSpec (*read)(ObjectReader& o, const std::optional<double>& radius);
     /// Centres between low and high [m], at most max_count if the order is that of the particles
     std::vector<Vec3> (*centres)(const FillSpec& f, const Vec3& low, const Vec3& high,
                                  Random& random) = nullptr;
@@ -47,11 +50,12 @@ struct FillType {
     double (*estimated_count)(const FillSpec& f, const Vec3& size) = nullptr;
 };
 
-/// Reads the keys of a box that is filled with spheres, see FillSpec. Throws io::InvalidInput.
-FillSpec read_filled_box(ObjectReader& o);
+/// Reads the keys of a box that is filled with spheres, see FillSpec. `radius`: default of the radius [m].
+/// Throws io::InvalidInput.
+FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius);
 
 /// Reads an entry of `fill`, without material and replica. Throws io::InvalidInput.
-FillSpec read_fill(ObjectReader& o);
+FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius = {});
 
 /// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
 /// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,

@@ -74,7 +74,7 @@ Particle particle(const io::CsvRow& row)
     return p;
 }
 
-FillSpec read_table(ObjectReader& o)
+FillSpec read_table(ObjectReader& o, const std::optional<double>&)
 {
     FillSpec f;
     const std::string file = f.file = o.file("file");

@@ -155,6 +155,8 @@ struct AdvanceView {
     const Float4* force;             ///< external forces by particle id [N]; nullptr if there are none
     const std::uint32_t* id;
     StepParameters step;
+    /// Receives the force and the torque of each particle about its centre [N, N m]; nullptr without clumps
+    Load* total = nullptr;
 };
 
 /// Advances all particles on a back end other than the CPU, which has sweep(); see loops.hpp. The loads of a

@@ -142,6 +142,7 @@ struct AdvanceOne {
                 T -= T_j;
             }
             T = v.w * M + T;
+            if (arrays.total != nullptr) arrays.total[k] = {{F.x, F.y, F.z, 0}, {T.x, T.y, T.z, 0}};
         }
         Compensation compensation = arrays.compensation[k];
         ParticleState<float> m{.v = vec(v),

@@ -45,6 +45,9 @@ struct Species {
     std::uint16_t material = 0, replica = 0;
 };
 
+/// Number of the clump of a particle that is in none
+constexpr std::uint32_t no_clump = ~std::uint32_t{0};
+
 /// Compensation of a particle: the rounding remainders of one step, which are added in the next step (Kahan
 /// summation).
 ///

@@ -118,6 +118,11 @@ struct AdvancePacks {
             .inverse_mass = w[3]};
         Vec<Pack> acc{a[0], a[1], a[2]}, alpha{b[0], b[1], b[2]};
         const Vec<Pack> torque{v[3] * M[0] + T[0], v[3] * M[1] + T[1], v[3] * M[2] + T[2]};
+        if (arrays.total != nullptr && arrays.step.part != Part::before_loads) {
+            const Pack of_F[4] = {F[0], F[1], F[2], zero}, of_T[4] = {torque.x, torque.y, torque.z, zero};
+            store_rows(of_F, [&](int k) { return &arrays.total[first + row<full>(k, valid)].F; });
+            store_rows(of_T, [&](int k) { return &arrays.total[first + row<full>(k, valid)].M; });
+        }
         const Displacement<Pack> moved =
             advance_particle(arrays.step, m, {F[0], F[1], F[2]}, torque, acc, alpha);
 

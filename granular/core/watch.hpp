@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "granular/clumps/clump.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
 
 namespace hilda::granular {
@@ -91,6 +92,7 @@ struct AddParticles {
     const std::uint32_t* id;
     std::uint32_t count;
     ParticleSums* out;
+    ClumpView clumps = {};
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
@@ -107,11 +109,23 @@ struct AddParticles {
             }
             if (copy == nullptr) continue;
             const double m = 1 / static_cast<double>(w.w), speed = v_k.norm();
+            sum.rate = larger(sum.rate, speed / v.w);
+            if (const std::uint32_t c = clumps(k); c != no_clump) {
+                if (clumps.represents(k, c)) add_clump(sum, clumps.body[c], copy[k]);
+                continue;
+            }
             sum.mass += m, sum.momentum += m * v_k, sum.momentum_size += m * speed;
             sum.moment += m * global_position(particles.grid, particles.position[k]);
-            sum.rate = larger(sum.rate, speed / v.w);
         }
         out[block] = sum;
+    }
+    HILDA_HD void add_clump(ParticleSums& sum, const ClumpBody& b, Velocities& own) const
+    {
+        const Vec3 v = to_double(b.velocity);
+        const double m = 1 / static_cast<double>(b.momentum.w);
+        sum.mass += m, sum.momentum += m * v, sum.momentum_size += m * v.norm();
+        sum.moment += m * global_position(particles.grid, b.position);
+        own = {{b.velocity.x, b.velocity.y, b.velocity.z}, {b.momentum.x, b.momentum.y, b.momentum.z}};
     }
 };
 
@@ -120,13 +134,15 @@ struct AddParticles {
 ///     T = Σ m/2 v·(v + s (v' - v)) + 1/5 m R² ω·(ω + s (ω' - ω))
 ///
 /// With the velocities v_{n-1/2} before and v_{n+1/2} = v + s (v' - v) after t_n, T + U(x_n) is constant for
-/// linear springs and for gravity, whatever the step.
+/// linear springs and for gravity, whatever the step. For a clump the rotation is
+/// 1/5 m R² ω·(w + s (w' - w)), see clump.hpp.
 struct AddKinetic {
     const Float4 *velocity, *omega;
     const Velocities* before;
     double s;
     std::uint32_t count;
     KineticSums* out;
+    ClumpView clumps = {};
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
@@ -139,7 +155,19 @@ struct AddKinetic {
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const Float4 v = velocity[k], w = omega[k];
             if (!(w.w > 0)) continue;
-            const double m = 1 / static_cast<double>(w.w), R = v.w;
+            const std::uint32_t c = clumps(k);
+            if (c != no_clump && !clumps.represents(k, c)) continue;
+            const double m = 1 / static_cast<double>(w.w),
+                         R = c == no_clump ? v.w : clumps.body[c].velocity.w;
+            if (c != no_clump) {
+                const ClumpBody& b = clumps.body[c];
+                const Vec<float>& w_b = before[k].omega;
+                const Vec3 w_before{w_b.x, w_b.y, w_b.z}, w_after = to_double(b.momentum);
+                sum.translation += 0.5 * m * product(before[k].v, b.velocity);
+                sum.rotation +=
+                    0.2 * m * R * R * to_double(b.omega_before).dot(w_before + s * (w_after - w_before));
+                continue;
+            }
             sum.translation += 0.5 * m * product(before[k].v, v);
             sum.rotation += 0.2 * m * R * R * product(before[k].omega, w);
         }

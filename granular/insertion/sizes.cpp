@@ -68,14 +68,14 @@ Sizes read_sizes(ObjectReader o)
     return {pieces, by_mass ? Share::of_mass : Share::of_number};
 }
 
-Sizes read_radius(ObjectReader& o)
+Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback)
 {
     if (o.has("sizes")) {
         for (const char* key : {"radius", "least_radius"})
             if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with sizes");
         return read_sizes(o.object("sizes"));
     }
-    const double radius = o.positive("radius"), least = o.number("least_radius", radius);
+    const double radius = o.positive("radius", fallback), least = o.number("least_radius", radius);
     if (least > 0 && least <= radius)
         o.positive("least_radius", radius);  // in single precision
     else

@@ -62,9 +62,9 @@ struct SizeType {
 /// Reads a size distribution: the keys type, by and those of the type. Throws io::InvalidInput.
 Sizes read_sizes(ObjectReader o);
 
-/// Reads the sizes of a set of particles: the key sizes, or radius and least_radius, between which the radii
-/// are uniformly distributed. Throws io::InvalidInput.
-Sizes read_radius(ObjectReader& o);
+/// Reads the sizes of a set of particles: sizes, or radius (with a default) and least_radius, between which
+/// the radii are uniformly distributed. Throws io::InvalidInput.
+Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback = {});
 
 /// Reads the keys least_radius and largest_radius, between which a distribution is cut off, with defaults
 /// [m]. Throws io::InvalidInput.

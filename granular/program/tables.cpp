@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// particles.csv, and with --contacts contacts.csv: the particles and contacts at the end of the run.
+/// particles.csv, clumps.csv of a case with clumps, and with --contacts contacts.csv: the particles, clumps
+/// and contacts at the end of the run.
 
 #include "granular/program/sink.hpp"
 #include "granular/world/output.hpp"
@@ -24,17 +25,24 @@ public:
     {
         io::write_file(directory + "/particles.csv",
                        [&](const io::Append& append) { particles_csv(world, append, c.groups.get()); });
+        if (has_clumps())
+            io::write_file(directory + "/clumps.csv",
+                           [&](const io::Append& append) { clumps_csv(world, append); });
         if (with_contacts)
             io::write_file(directory + "/contacts.csv",
                            [&](const io::Append& append) { contacts_csv(world, append); });
     }
     std::vector<std::string> files() const override
     {
-        if (with_contacts) return {"particles.csv", "contacts.csv"};
-        return {"particles.csv"};
+        std::vector<std::string> all = {"particles.csv"};
+        if (has_clumps()) all.emplace_back("clumps.csv");
+        if (with_contacts) all.emplace_back("contacts.csv");
+        return all;
     }
 
 private:
+    bool has_clumps() const { return !world.clump_templates().empty(); }
+
     const Case& c;
     const World& world;
     const std::string& directory;
@@ -46,7 +54,7 @@ const bool registered = io::Registry<SinkType>::add(
      .options = {{.name = "--contacts",
                   .help = "write contacts.csv as well: all contacts at the end of the run"}},
      .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> { return std::make_unique<Tables>(run); },
-     .files = {"particles.csv", "contacts.csv"}});
+     .files = {"particles.csv", "clumps.csv", "contacts.csv"}});
 
 }  // namespace
 

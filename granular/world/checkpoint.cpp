@@ -182,16 +182,6 @@ std::string changes(const Boundary& now, const Boundary& saved)
     return all.empty() ? "other bytes" : all;
 }
 
-/// The cell exists, and along each axis the particle is less than a cell away from it: it was inside when the
-/// neighbour list was built. The width of the widest cell counts, for all worlds.
-bool inside(const CellGrid& g, const Position& p)
-{
-    const std::int32_t x = g.x_of(p.cell), y = g.y_of(p.cell), z = g.z_of(p.cell);
-    const auto near = [](std::int32_t at) { return at >= -CellGrid::widest && at < 2 * CellGrid::widest; };
-    return x < g.cells[0] && y < g.cells[1] && z < g.cells[2] && near(g.local(p.x, x, 0)) &&
-           near(g.local(p.y, y, 1)) && near(g.local(p.z, z, 2));
-}
-
 /// The n ids are below `limit`, and all differ.
 bool valid_ids(const std::uint32_t* id, std::size_t n, std::uint32_t limit)
 {
@@ -358,7 +348,7 @@ void World::transfer(io::Archive& a)
     for (std::size_t k = 0; k < n; ++k) {
         PlaceAtBuild& place = at_build[k];
         a.value(place);
-        if (!inside(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}))
+        if (!is_near_domain(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}))
             a.check(false, "invalid position of " + name_of(p.id.data()[k]) + ", got " +
                                shown(Vec3{double(place.x), double(place.y), double(place.z)}));
     }
@@ -391,7 +381,7 @@ void World::transfer_particles(io::Archive& a)
     n = a.list(p.position, n);
     a.check_each(
         p.position, "invalid position of a particle",
-        [&](const Position& at) { return inside(domain.grid, at); },
+        [&](const Position& at) { return is_near_domain(domain.grid, at); },
         [&](const Position& at) {
             return "cell " + std::to_string(at.cell) + ", " +
                    shown(Vec3{double(at.x), double(at.y), double(at.z)});
@@ -463,9 +453,11 @@ void World::transfer_particles(io::Archive& a)
         throw io::IoError(a.name() + ": the checkpoint " + (options.orientation ? "has no" : "has") +
                           " orientations, but /orientation of this case is " +
                           (options.orientation ? "true" : "false"));
-    if (!a.reads()) return;
-    p.count = static_cast<std::uint32_t>(n);
-    inserted_count = n;
+    if (a.reads()) {
+        p.count = static_cast<std::uint32_t>(n);
+        inserted_count = n;
+    }
+    transfer_clumps(a);
 }
 
 /// Builds the neighbour list of the saved world, with the positions for which it was built. Throws
@@ -498,6 +490,10 @@ void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild
     const std::uint64_t saved = order();
     const auto displacements = std::pair(particle_displacement, boundary_displacement);
     const long rebuilds = rebuild_count;
+    // The search would assign the clumps to the cells of their present places.
+    par::Array<par::Cpu, ClumpBody>& clumps_now = engine->arrays().clump;
+    const std::vector<ClumpBody> clumps_saved(clumps_now.data(), clumps_now.data() + clumps_now.size());
+    clumps_now.resize(0);
     exchange();
     try {
         find_neighbours();
@@ -512,6 +508,8 @@ void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild
         throw io::IoError(file +
                           ": the checkpoint is damaged: the checksum of the order of the particles must be " +
                           std::to_string(found) + ", got " + std::to_string(saved));
+    clumps_now.resize(clumps_saved.size());
+    std::copy(clumps_saved.begin(), clumps_saved.end(), clumps_now.data());
     exchange();
     boundaries = now;
     std::tie(particle_displacement, boundary_displacement) = displacements;

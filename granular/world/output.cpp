@@ -39,17 +39,37 @@ void particles_csv(const World& world, const io::Append& append_piece, const Gro
 {
     const bool orientation = world.has_orientation();
     std::string csv = "id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z";
-    csv += orientation ? ",e0,e1,e2,e3" : "";
-    csv += groups != nullptr ? ",group\n" : "\n";
+    if (orientation) csv += ",e0,e1,e2,e3";
+    const bool clumps = !world.clump_templates().empty();
+    if (groups != nullptr) csv += ",group";
+    csv += clumps ? ",clump\n" : "\n";
     world.each_particle([&](const Particle& p) {
         csv += std::to_string(p.id) + ',' + std::to_string(p.material) + ',';
         io::append_number(csv, p.radius);
         append(csv, p.r), append(csv, p.v), append(csv, p.omega);
         for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', io::append_number(csv, p.e[k]);
         if (groups != nullptr) csv += ',' + std::to_string(groups->of(p.id));
+        if (clumps) csv += ',' + std::to_string(p.clump);
         csv += '\n';
         pass_on_full(csv, append_piece);
     });
+    append_piece(csv);
+}
+
+void clumps_csv(const World& world, const io::Append& append_piece)
+{
+    std::string csv =
+        "id,spheres,shape,mass,scale,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z,e0,e1,e2,e3,Lx,Ly,Lz\n";
+    for (const Clump& c : world.clumps()) {
+        const ClumpTemplate& t = world.clump_templates()[static_cast<std::size_t>(c.shape)];
+        csv += std::to_string(c.id) + ',' + std::to_string(t.spheres.size()) + ',' + std::to_string(c.shape);
+        for (const double x : {c.mass, c.scale}) csv += ',', io::append_number(csv, x);
+        append(csv, c.r), append(csv, c.v), append(csv, c.omega);
+        for (const double e : c.e) csv += ',', io::append_number(csv, e);
+        append(csv, c.L);
+        csv += '\n';
+        pass_on_full(csv, append_piece);
+    }
     append_piece(csv);
 }
 
@@ -90,6 +110,8 @@ void particles_vtp(const World& world, const io::Append& append_piece, const Gro
     array("id", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.id}; });
     if (groups != nullptr)
         array("group", 1, std::int32_t{}, [&](const Particle& p) { return std::array{groups->of(p.id)}; });
+    if (!world.clump_templates().empty())
+        array("clump", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.clump}; });
     file.section("Points");
     array("Points", 3, double{}, [&](const Particle& p) { return three(p.r); });
     file.write(append_piece);
@@ -100,10 +122,12 @@ std::array<double, 9> stress(const World& world, const std::vector<ContactRecord
     std::array<double, 9> sum{};
     const std::vector<Particle> all = world.particles();
     for (const ContactRecord& c : contacts) {
-        // length of the branch vector, which is parallel to n
+        // length of the branch vector of two spheres, which is parallel to n
         const double length =
             all[index_of(c.i, all)].radius + (c.boundary ? 0 : all[index_of(c.j, all)].radius) - c.delta;
-        const double l[] = {length * c.n.x, length * c.n.y, length * c.n.z}, F[] = {c.F.x, c.F.y, c.F.z};
+        Vec3 branch = length * c.n - world.offset_in_clump(c.i);
+        if (!c.boundary) branch += world.offset_in_clump(c.j);
+        const double l[] = {branch.x, branch.y, branch.z}, F[] = {c.F.x, c.F.y, c.F.z};
         for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) sum[3 * a + b] += l[a] * F[b] / volume;
     }

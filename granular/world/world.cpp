@@ -166,6 +166,8 @@ void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
     if (!finite(v) || !finite(omega))
         refuse("velocity of " + name_of(id), "must be finite", not_finite({v, omega}));
     insert_pending();
+    if (clump_of(id) != no_clump)
+        refuse("velocity of " + name_of(id), "must not be set, because it belongs to a clump; particle", id);
     Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (p.id.data()[k] == id) {
@@ -187,6 +189,13 @@ void World::stop(std::uint16_t replica)
         p.velocity.data()[k] = to_float4({0, 0, 0}, p.velocity.data()[k].w);
         p.omega.data()[k] = to_float4({0, 0, 0}, p.omega.data()[k].w);
         p.compensation.data()[k] = {.displacement = p.compensation.data()[k].displacement};
+    }
+    par::Array<par::Cpu, ClumpBody>& all = engine->arrays().clump;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        ClumpBody& b = all.data()[k];
+        if (b.replica != replica) continue;
+        b.velocity = to_float4({0, 0, 0}, b.velocity.w), b.momentum = to_float4({0, 0, 0}, b.momentum.w);
+        b.compensation = {.displacement = b.compensation.displacement};
     }
     start_balance();
     engine->arrays_modified();
@@ -255,6 +264,7 @@ void World::find_neighbours() const
     }
     laws_changed = false;
     send_boundaries();
+    send_clumps();
     try {
         engine->find_neighbours(domain);
     } catch (const TooManyPairs&) {
@@ -330,6 +340,7 @@ void World::one_step()
     forces_changed = false;
     const auto check_displacement = [&](double displacement) {
         if (displacement < domain.grid.unit * CellGrid::widest) return;
+        if (std::isinf(max_speed) && engine->arrays().clump.size() > 0) throw_turns_too_far();
         const Particles<par::Cpu>& p = engine->arrays().particle;
         std::uint32_t fastest = 0;
         double max_speed_found = -1;
@@ -356,6 +367,7 @@ void World::one_step()
     };
     place_parts();
     send_boundaries();
+    send_clumps();
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads(true);

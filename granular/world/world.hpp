@@ -5,6 +5,7 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
+#include "granular/clumps/clump_template.hpp"
 #include "granular/core/boundary.hpp"
 #include "granular/core/pair_law.hpp"
 #include "granular/world/watch.hpp"
@@ -68,8 +69,10 @@ struct Particle {
     int material = 0;                       ///< index into the materials of the world
     Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m/s, rad/s]
     bool fixed = false;                     ///< the centre does not move; omega stays constant
-    double mass = 0;                        ///< [kg]; 0: from radius and density; not used if fixed
-    std::uint16_t replica = 0;              ///< index of the replica it belongs to
+    /// [kg]; 0: from radius and density; not used if fixed. World::particles() divides the mass of a clump
+    /// among its spheres in proportion to their volumes.
+    double mass = 0;
+    std::uint16_t replica = 0;  ///< index of the replica it belongs to
     /// Euler parameters e0, e1, e2, e3 of the rotation from the body frame to the global frame; normalised on
     /// insertion. They are integrated only if WorldOptions::orientation is set.
     std::array<double, 4> e = {1, 0, 0, 0};
@@ -77,7 +80,25 @@ struct Particle {
     /// Number of the boundary with which the particle moves rigidly from its insertion on; -1: none. The
     /// boundary has no mass. Such a particle is fixed: contacts do not accelerate it.
     int attached_to = -1;
+    /// Id of the first particle of its clump, set by World::particles(); -1: none
+    std::int64_t clump = -1;
 };
+
+/// A clump: its place and its motion
+struct Clump {
+    int shape = 0;       ///< number of its template
+    Vec3 r = {0, 0, 0};  ///< centre of mass, in the global frame [m]
+    std::array<double, 4> e = {1, 0, 0,
+                               0};  ///< Euler parameters of the rotation from the frame of the template
+    Vec3 v = {0, 0, 0}, omega = {0, 0, 0};  ///< in the global frame [m/s, rad/s]
+    double scale = 1;                       ///< of the lengths of the template, at the same density
+    std::uint16_t replica = 0;
+    // set by World::clumps()
+    std::uint32_t id = 0;  ///< of the first particle; the others have the next ids
+    double mass = 0;       ///< [kg]
+    Vec3 L = {0, 0, 0};    ///< angular momentum about the centre of mass [kg m²/s]
+};
+
 /// Index of the particle with this id in a list that is ordered by ids and contains it
 inline std::size_t index_of(std::uint32_t id, const std::vector<Particle>& ordered)
 {
@@ -179,6 +200,17 @@ public:
     /// it is inserted during a run, schemes that use the previous acceleration start it with that of
     /// gravity.
     std::uint32_t add(const Particle& particle);
+    /// Adds a template of clumps and returns its number. Throws io::InvalidInput.
+    int add_template(const ClumpTemplate& shape);
+    /// Adds the particles of a clump, with consecutive ids, and returns the first one. They are pending like
+    /// other particles. The clump moves as one rigid body. Throws io::InvalidInput.
+    std::uint32_t add_clump(const Clump& clump);
+    /// The clumps at t in the order of their ids, pending ones last
+    std::vector<Clump> clumps() const;
+    /// Centre of an inserted particle relative to the centre of mass of its clump, in the global frame [m];
+    /// zero for a particle that is in no clump
+    Vec3 offset_in_clump(std::uint32_t id) const;
+    const std::vector<ClumpTemplate>& clump_templates() const { return templates; }
     /// Announces particles that are added during the run, at most this number, with the radii, materials and
     /// replicas of the samples. The cells are made for them, and step_limits(), the check of the laws and the
     /// memory that is reserved by the first insertion include them. Throws io::InvalidInput.
@@ -257,7 +289,8 @@ public:
     /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
     /// Throws io::InvalidInput.
     void set_force(std::uint32_t id, const Vec3& F);
-    /// Sets the velocities of a particle, in the global frame [m/s, rad/s]. Throws io::InvalidInput.
+    /// Sets the velocities of a particle that is in no clump, in the global frame [m/s, rad/s]. Throws
+    /// io::InvalidInput.
     void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
     /// Sets the velocities of all particles of a replica to zero.
     void stop(std::uint16_t replica);
@@ -289,7 +322,9 @@ public:
         double potential_energy = 0;
         Vec3 momentum = {0, 0, 0};  ///< linear [kg m/s]
 
-        void add(const Particle& p, const Vec3& gravity);
+        void add(const Particle& p, const Vec3& gravity) { add(p, p.omega, gravity); }
+        /// The rotational energy is 1/5 m R² omega·w.
+        void add(const Particle& p, const Vec3& w, const Vec3& gravity);
         void add(const Sums& part);
     };
     Sums sums() const;
@@ -400,6 +435,26 @@ private:
     void remove_outside();
     RemovedParticle removed_at(std::uint32_t k, std::uint32_t side) const;
     void keep_particles(const std::vector<std::uint32_t>& kept, std::size_t first_removed);
+    // clumps; see world_clumps.cpp
+    std::uint32_t clump_of(std::uint32_t id) const
+    {
+        return id < clump_tables.of.size() ? clump_tables.of[id] : no_clump;
+    }
+    double fraction_of(std::uint32_t id, std::uint32_t clump) const;
+    struct ClumpState {
+        Particle body;  ///< with the mass of the clump, and R of ClumpBody
+        Vec3 w;         ///< see clump.hpp [rad/s]
+    };
+    ClumpState clump_state(std::uint32_t number) const;
+    ClumpState clump_state(const Clump& pending) const;
+    double reach_of_clumps() const;
+    void insert_clumps(const std::vector<Particle>& moved);
+    std::vector<Particle> clump_places() const;
+    void update_clump_tables();
+    void send_clumps() const;
+    void transfer_clumps(io::Archive& a);
+    void check_clumps() const;
+    [[noreturn]] void throw_turns_too_far() const;
     bool is_removed(std::uint32_t id) const;
     void attach(const Particle& p);
     int boundary_of(std::uint32_t id) const;
@@ -457,6 +512,12 @@ private:
     std::vector<std::string> boundary_names;
     std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;  ///< particles added since the last insertion
+    std::vector<ClumpTemplate> templates;
+    std::vector<EulerParameters<double>> clump_axes;  ///< of the templates, see PrincipalInertia
+    std::vector<double> clump_R;                      ///< of the templates, see ClumpBody::velocity [m]
+    std::vector<Clump> pending_clumps;                ///< of the pending particles
+    ClumpTables clump_tables;
+    mutable bool clumps_changed = false;
     struct Expected {
         std::vector<Particle> samples;
         std::size_t particles;

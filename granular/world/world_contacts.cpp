@@ -222,6 +222,7 @@ void World::add_totals(const To& to) const
     const Arrays<par::Cpu>& of = engine->arrays();
     const Position* position = of.particle.position.data();
     const Float4* omega = of.particle.omega.data();
+    const std::uint32_t* id = of.particle.id.data();
     // Partial sums over fixed parts of the pairs, added in order: the result does not depend on the number of
     // threads. Pairs are ordered by replica; a part has one sum for each replica in it.
     struct Sum {
@@ -247,12 +248,16 @@ void World::add_totals(const To& to) const
             if (of_part.empty() || of_part.back().to != replica) of_part.emplace_back().to = replica;
             Sum& sum = of_part.back();
             if ((j & PairView::boundary_bit) == 0) {
-                add_stress(sum, separation(domain.grid, position[i], position[j]), F);
+                add_stress(sum,
+                           separation(domain.grid, position[i], position[j]) -
+                               (offset_in_clump(id[i]) - offset_in_clump(id[j])),
+                           F);
                 const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
                 if (!attached.empty() && fixed) sum.with_boundaries.push_back(contact(now, n));
             } else {
                 const ContactRecord c = contact(now, n);
-                add_stress(sum, (of.particle.velocity.data()[i].w - c.delta) * c.n, F);
+                add_stress(sum, (of.particle.velocity.data()[i].w - c.delta) * c.n - offset_in_clump(id[i]),
+                           F);
                 sum.with_boundaries.push_back(c);
             }
         }
@@ -277,13 +282,20 @@ World::Totals World::totals() const
 std::vector<World::ReplicaTotals> World::replica_totals() const
 {
     std::vector<ReplicaTotals> all;
+    const auto add = [](ReplicaTotals& sum, const Particle& p, const Vec3& w) {
+        sum.kinetic_energy += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(w));
+        sum.momentum += p.mass * p.v;
+    };
     each_particle([&](const Particle& p) {
         if (p.replica >= all.size()) all.resize(p.replica + std::size_t{1});
         ReplicaTotals& sum = all[p.replica];
         ++sum.particles;
-        sum.kinetic_energy +=
-            0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
-        sum.momentum += p.mass * p.v;
+        if (p.clump < 0) {
+            add(sum, p, p.omega);
+        } else if (const std::uint32_t c = clump_of(p.id); p.clump == p.id && c != no_clump) {
+            const ClumpState s = clump_state(c);
+            add(sum, s.body, s.w);
+        }
     });
     if (inserted_count > 0) all.resize(std::max<std::size_t>(all.size(), domain.replicas));
     for (ReplicaTotals& sum : all) sum.on_boundary.resize(boundaries.size());

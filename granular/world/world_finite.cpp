@@ -62,6 +62,7 @@ void World::check_finite() const
             refuse_state(name_of(p.id.data()[k]) + ": the acceleration", time,
                          shown(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
     check_histories();
+    check_clumps();
     for (std::size_t b = 0; b < boundaries.size(); ++b)
         for (const Vec3& v : {boundaries[b].r, boundaries[b].axis, boundaries[b].v, boundaries[b].omega,
                               boundaries[b].F, boundaries[b].T})

@@ -50,6 +50,15 @@ inline bool finite(const Float4& a)
 }
 /// The first number of the record that is not finite; 0 if all are
 double not_finite(const WatchRecord& record);
+/// The cell exists, and along each axis the position is less than a cell away from it: it was inside when the
+/// neighbour list was built. The width of the widest cell counts, for all worlds.
+inline bool is_near_domain(const CellGrid& g, const Position& p)
+{
+    const std::int32_t x = g.x_of(p.cell), y = g.y_of(p.cell), z = g.z_of(p.cell);
+    const auto near = [](std::int32_t at) { return at >= -CellGrid::widest && at < 2 * CellGrid::widest; };
+    return x < g.cells[0] && y < g.cells[1] && z < g.cells[2] && near(g.local(p.x, x, 0)) &&
+           near(g.local(p.y, y, 1)) && near(g.local(p.z, z, 2));
+}
 /// From the centre of j to that of i [m]
 inline Vec3 separation(const CellGrid& g, const Position& i, const Position& j)
 {

@@ -66,6 +66,9 @@ void World::expect(const std::vector<Particle>& samples, std::size_t particles)
 /// Whether the cells are made for particles that include these
 bool World::fits(const std::vector<Particle>& all) const
 {
+    if (!pending_clumps.empty())
+        for (const std::int32_t width : domain.grid.width)
+            if (!(reach_of_clumps() + domain.skin <= width * domain.grid.unit)) return false;
     return std::all_of(all.begin(), all.end(), [&](const Particle& p) {
         const auto radius = static_cast<float>(p.radius);
         return radius <= domain.largest && p.replica < domain.replicas &&
@@ -129,7 +132,8 @@ Domain World::domain_of(const std::vector<Particle>& all) const
                        std::numeric_limits<float>::min());
     double cell = cell_diameter(diameters, in.skin);
     if (!set_cells(grid, cell + in.skin, in.replicas)) cell = largest;
-    double edge = cell + in.skin;
+    // The particles of a clump can be outside the domain, by less than a cell.
+    double edge = std::max(cell, reach_of_clumps()) + in.skin;
     // Cells that are wider than necessary make the length unit coarser.
     constexpr double largest_factor = 8;
     while (!set_cells(grid, edge, in.replicas)) {
@@ -218,9 +222,10 @@ std::vector<World::CellPosition> World::cell_positions(const Domain& in, const s
             } else if (!(units >= 0 && units <= length)) {
                 if (k >= first_new)
                     refuse(name_of(all[k].id), std::string("is outside the domain along ") + "xyz"[c], r[c]);
-                throw_left(all[k].id);
+                if (all[k].clump < 0) throw_left(all[k].id);
             }
-            const double cell_index = std::min(std::floor(units / grid.width[c]), double(grid.cells[c] - 1));
+            const double cell_index =
+                std::clamp(std::floor(units / grid.width[c]), 0., double(grid.cells[c] - 1));
             cell[c] = static_cast<std::int32_t>(cell_index);
             const double in_cell = units - cell_index * grid.width[c];
             at[c] = static_cast<std::int32_t>(std::lround(in_cell));
@@ -301,6 +306,7 @@ void World::write_particle(std::uint32_t k, const Particle& particle, const Cell
 /// Writes these particles to the arrays, ordered by id.
 void World::insert(const std::vector<Particle>& all)
 {
+    const std::vector<Particle> clumps_before = clump_places();
     const Domain next = domain_of(all);
     std::vector<CellPosition> located = cell_positions(next, all, inserted_count);
     check_laws(all);
@@ -330,6 +336,7 @@ void World::insert(const std::vector<Particle>& all)
         std::copy(acc_of.begin(), acc_of.end(), p.acc.data());
         std::copy(alpha_of.begin(), alpha_of.end(), p.alpha.data());
     }
+    insert_clumps(clumps_before);
     end_insertion(all);
 }
 
@@ -362,6 +369,7 @@ void World::append_pending()
     if (options.orientation) lengthen(p.orientation, n), lengthen(p.orientation_compensation, n);
     p.count = n;
     for (std::uint32_t k = 0; k < pending.size(); ++k) write_particle(before + k, pending[k], located[k]);
+    insert_clumps({});
     end_insertion(std::exchange(pending, {}));
 }
 
@@ -375,6 +383,7 @@ void World::end_insertion(const std::vector<Particle>& all)
     start_balance();
     inserted_count = engine->arrays().particle.count;
     next_id = all.back().id + 1;
+    update_clump_tables();
     if (!forces.empty()) forces.resize(next_id), forces_changed = true;
     engine->arrays_modified();
 }

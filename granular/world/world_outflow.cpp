@@ -11,18 +11,6 @@ using namespace detail;
 
 namespace {
 
-/// Coordinate along an axis from the low side of the domain [units]
-std::int64_t coordinate(const CellGrid& g, const Position& p, int axis)
-{
-    const std::int32_t cell = axis == 0   ? g.x_of(p.cell)
-                              : axis == 1 ? g.y_of(p.cell)
-                                          : g.z_of(p.cell),
-                       at = axis == 0   ? p.x
-                            : axis == 1 ? p.y
-                                        : p.z;
-    return std::int64_t{cell} * g.width[axis] + g.local(at, cell, axis);
-}
-
 /// The side of the domain behind which the particle is, that with the largest distance; -1 if it is inside.
 /// The condition is that of the neighbour search.
 int side_behind(const CellGrid& g, const Position& p)
@@ -74,25 +62,32 @@ RemovedParticle World::removed_at(std::uint32_t k, std::uint32_t side) const
 {
     const Particles<par::Cpu>& p = engine->arrays().particle;
     const Float4 v = p.velocity.data()[k], w = p.omega.data()[k];
+    const std::uint32_t id = p.id.data()[k], clump = clump_of(id);
+    const double share = clump == no_clump ? 1 : fraction_of(id, clump);
     return {.t = time,
             .r = global_position(domain.grid, p.position.data()[k]),
             .v = to_double(v),
             .omega = to_double(w),
             .radius = v.w,
-            .mass = w.w > 0 ? 1 / static_cast<double>(w.w) : 0,
-            .id = p.id.data()[k],
+            .mass = w.w > 0 ? share / static_cast<double>(w.w) : 0,
+            .id = id,
             .side = side};
 }
 
 /// Removes and records the particles outside the domain. Throws ParticleLost for a particle outside that has
-/// left through another side.
+/// left through another side. The particles of a clump leave with its centre of mass.
 void World::remove_outside()
 {
     const Particles<par::Cpu>& p = engine->arrays().particle;
+    const par::Array<par::Cpu, ClumpBody>& clump = engine->arrays().clump;
     std::vector<std::uint32_t> kept;
     const std::size_t first = removed_particles.size();
+    std::vector<int> side_of_clump;
+    for (std::size_t k = 0; k < clump.size(); ++k)
+        side_of_clump.push_back(side_behind(domain.grid, clump.data()[k].position));
     for (std::uint32_t k = 0; k < p.count; ++k) {
-        const int side = side_behind(domain.grid, p.position.data()[k]);
+        const std::uint32_t c = clump_of(p.id.data()[k]);
+        const int side = c == no_clump ? side_behind(domain.grid, p.position.data()[k]) : side_of_clump[c];
         if (side < 0) {
             kept.push_back(k);
             continue;
@@ -108,10 +103,15 @@ void World::remove(const std::vector<std::uint32_t>& ids)
 {
     insert_pending();
     const Particles<par::Cpu>& p = engine->arrays().particle;
+    const par::Array<par::Cpu, ClumpBody>& clump = engine->arrays().clump;
     std::vector<std::uint32_t> kept;
     const std::size_t first = removed_particles.size();
+    const auto is_listed = [&](std::uint32_t id) {  // a clump by its first particle
+        const std::uint32_t c = clump_of(id);
+        return std::binary_search(ids.begin(), ids.end(), c == no_clump ? id : clump.data()[c].first_id);
+    };
     for (std::uint32_t k = 0; k < p.count; ++k)
-        if (std::binary_search(ids.begin(), ids.end(), p.id.data()[k]))
+        if (is_listed(p.id.data()[k]))
             removed_particles.push_back(removed_at(k, RemovedParticle::none));
         else
             kept.push_back(k);
@@ -145,6 +145,11 @@ void World::keep_particles(const std::vector<std::uint32_t>& kept, std::size_t f
     keep(p.orientation, kept), keep(p.orientation_compensation, kept), keep(p.position_at_build, kept);
     p.count = static_cast<std::uint32_t>(kept.size());
     inserted_count = kept.size();
+    std::vector<std::uint32_t> kept_clumps;
+    for (std::uint32_t k = 0; k < side_of_clump.size(); ++k)
+        if (side_of_clump[k] < 0) kept_clumps.push_back(k);
+    keep(a.clump, kept_clumps);
+    update_clump_tables();
 
     Pairs<par::Cpu>& pairs = a.pairs;
     std::vector<std::uint32_t> rows;

@@ -33,6 +33,10 @@ Particle World::particle_at(std::uint32_t k) const
     p.fixed = w.w == 0;
     p.mass =
         p.fixed ? sphere_mass(p.radius, materials[species.material].density) : 1 / static_cast<double>(w.w);
+    if (const std::uint32_t c = clump_of(p.id); c != no_clump) {
+        p.mass *= fraction_of(p.id, c);
+        p.clump = engine->arrays().clump.data()[c].first_id;
+    }
     return p;
 }
 
@@ -59,10 +63,10 @@ std::vector<Particle> World::particles() const
     return all;
 }
 
-void World::Sums::add(const Particle& p, const Vec3& gravity)
+void World::Sums::add(const Particle& p, const Vec3& w, const Vec3& gravity)
 {
-    kinetic_energy += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(p.omega));
-    rotational_energy += 0.2 * p.mass * p.radius * p.radius * p.omega.dot(p.omega);
+    kinetic_energy += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(w));
+    rotational_energy += 0.2 * p.mass * p.radius * p.radius * p.omega.dot(w);
     if (!p.fixed) potential_energy -= p.mass * gravity.dot(p.r);
     momentum += p.mass * p.v;
 }
@@ -86,12 +90,22 @@ World::Sums World::sums() const
         par::Cpu(), of_block.size(),
         [&](std::uint32_t number) {
             for (std::uint32_t k = number * block; k < std::min((number + 1) * block, count); ++k)
-                of_block[number].add(particle_at(k), gravity);
+                if (const std::uint32_t id = engine->arrays().particle.id.data()[k], c = clump_of(id);
+                    c == no_clump) {
+                    of_block[number].add(particle_at(k), gravity);
+                } else if (const ClumpState s = clump_state(c); s.body.id == id) {
+                    of_block[number].add(s.body, s.w, gravity);
+                }
         },
         8);
     Sums all;
     for (const Sums& part : of_block) all.add(part);
-    for (const Particle& p : pending) all.add(p, gravity);
+    for (const Particle& p : pending)
+        if (p.clump < 0) all.add(p, gravity);
+    for (const Clump& c : pending_clumps) {
+        const ClumpState s = clump_state(c);
+        all.add(s.body, s.w, gravity);
+    }
     return all;
 }
 

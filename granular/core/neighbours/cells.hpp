@@ -18,6 +18,10 @@ struct AssignCell {
     const Species* species;
     std::uint32_t* key;
     std::uint32_t* order;
+    /// Number of the clump by id, or no_clump; nullptr without clumps. A particle of a clump that is outside
+    /// gets the closest cell: the clump leaves the domain with its centre of mass.
+    const std::uint32_t* clump_of = nullptr;
+    const std::uint32_t* id = nullptr;
 
     /// Moves a coordinate into the domain along a periodic axis, and finds its cell; false if it is outside
     /// the domain.
@@ -36,13 +40,21 @@ struct AssignCell {
         return cell >= 0 && (cell < cells - 1 || (cell == cells - 1 && at <= grid.last[axis]));
     }
 
+    HILDA_HD std::int32_t nearest_cell(std::int32_t cell, int axis) const
+    {
+        const std::int32_t last = grid.cells[axis] - 1;
+        return cell < 0 ? 0 : cell > last ? last : cell;
+    }
+
     HILDA_HD void operator()(std::uint32_t k) const
     {
         Position p = position[k];
         std::int32_t x = grid.x_of(p.cell), y = grid.y_of(p.cell), z = grid.z_of(p.cell);
         const bool in_x = move(x, p.x, 0), in_y = move(y, p.y, 1), in_z = move(z, p.z, 2);
         order[k] = k;
-        if (!(in_x && in_y && in_z)) {
+        if (clump_of != nullptr && clump_of[id[k]] != no_clump) {
+            x = nearest_cell(x, 0), y = nearest_cell(y, 1), z = nearest_cell(z, 2);
+        } else if (!(in_x && in_y && in_z)) {
             key[k] = outside_domain;
             return;
         }

@@ -102,9 +102,10 @@ struct SearchInput {
     const std::uint8_t* law_of = nullptr;
     std::uint32_t materials = 1;
     Surfaces surfaces;
-    BoundaryBlockView near;      ///< of these surfaces
-    bool rotation_laws = false;  ///< whether a law of rolling or spin is in use
-    bool internal = false;       ///< whether a law has internal variables
+    BoundaryBlockView near;                   ///< of these surfaces
+    bool rotation_laws = false;               ///< whether a law of rolling or spin is in use
+    bool internal = false;                    ///< whether a law has internal variables
+    const std::uint32_t* clump_of = nullptr;  ///< see AssignCell
 };
 
 /// A contact of the previous list with its history; see PairView.

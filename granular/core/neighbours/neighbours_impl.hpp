@@ -29,7 +29,8 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
     key.resize(n), order.resize(n), new_index.resize(n);
     scratch.resize(n + detail::SearchedRows<Backend>::padding);
     par::for_each(on, n,
-                  detail::AssignCell{g, p.position.data(), p.species.data(), key.data(), order.data()});
+                  detail::AssignCell{g, p.position.data(), p.species.data(), key.data(), order.data(),
+                                     input.clump_of, p.id.data()});
     par::stable_sort_by_key(on, key.data(), order.data(), n, std::bit_width(cells));
     if (n > 0) {
         std::uint32_t last = 0;
@@ -122,7 +123,9 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         .largest = domain.largest,
         .surfaces = input.surfaces,
         .near = input.near,
-        .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()}};
+        .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()},
+        .clump_of = input.clump_of,
+        .id = p.id.data()};
     counts.resize(n);
     pairs.start.resize(n + 1);
     // The histories have been saved. Their memory keeps the partners that are found.

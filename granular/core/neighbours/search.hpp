@@ -13,7 +13,8 @@
 namespace hilda::granular::detail {
 
 /// Calls f(j) in a fixed order for the partners of particle k whose surfaces are closer than the skin:
-/// particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no pair.
+/// particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no pair, nor are
+/// two particles of a clump.
 ///
 /// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
 /// finds all small ones and the large ones with higher indices in the cells within its reach.
@@ -29,6 +30,7 @@ struct Search {
     Surfaces surfaces;
     BoundaryBlockView near;
     SearchedRows<Backend> rows;
+    const std::uint32_t *clump_of, *id;  ///< see AssignCell
 
     /// The partners of particle k among the particles from `first` to `last` - 1. If k is small, all of them
     /// have the same periodic image.
@@ -103,6 +105,16 @@ struct Search {
 
     template <class F>
     HILDA_HD void operator()(std::uint32_t k, const F& f) const
+    {
+        const std::uint32_t own = clump_of == nullptr ? no_clump : clump_of[id[k]];
+        if (own == no_clump) return find(k, f);
+        find(k, [&](std::uint32_t other) {
+            if ((other & PairView::boundary_bit) != 0 || clump_of[id[other]] != own) f(other);
+        });
+    }
+
+    template <class F>
+    HILDA_HD void find(std::uint32_t k, const F& f) const
     {
         if (velocity[k].w > small)
             search_reach(k, f);

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/clumps/clump_keys.hpp"
+
+#include "granular/case/boundary_keys.hpp"
+#include "io/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::granular {
+
+namespace {
+
+/// The number of the template that the key clump names
+int template_of(ObjectReader& o, const World& world)
+{
+    std::vector<std::string> names;
+    for (const ClumpTemplate& t : world.clump_templates()) names.push_back(t.name);
+    if (names.empty())
+        o.fail("clump", "clump must name an entry of clumps, which the case does not have, got " +
+                            io::described(*o.find("clump")));
+    const std::string name = o.one_of("clump", names);
+    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+void refuse_with_clump(const ObjectReader& o, std::initializer_list<const char*> keys)
+{
+    for (const char* key : keys)
+        if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with clump");
+}
+
+std::array<double, 4> read_orientation(ObjectReader& o)
+{
+    const std::vector<double> e = o.numbers("orientation", 4);
+    const double length = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+    if (!(std::abs(length - 1) < 1e-3))
+        o.fail("orientation",
+               "Euler parameters must have the length 1 within 1e-3, got " + io::shortest(length));
+    return {e[0], e[1], e[2], e[3]};
+}
+
+}  // namespace
+
+ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, const Material& properties)
+{
+    const std::string name = o.name("name", "clump " + std::to_string(world.clump_templates().size()));
+    for (const ClumpTemplate& other : world.clump_templates())
+        if (other.name == name) o.fail("name", "two clumps have the same name, got " + io::described(name));
+    std::vector<Sphere> spheres;
+    for (ObjectReader& s : o.objects("spheres")) {
+        spheres.push_back({s.vec3("r", Vec3{0, 0, 0}), s.positive("radius")});
+        s.finish();
+    }
+    if (spheres.empty()) o.fail("spheres", "a clump must have at least one sphere, got none");
+    o.exclude("density", "mass");
+    if (!o.has("mass")) {
+        for (const char* key : {"inertia", "centre"})
+            if (o.has(key)) o.fail(key, std::string(key) + " needs mass, got none");
+        const double density = o.positive("density", properties.density);
+        return o.located([&] { return solid_clump(name, spheres, density, material); });
+    }
+    ClumpTemplate t = o.located([&] { return solid_clump(name, spheres, 1, material); });
+    t.mass = o.positive("mass");
+    if (!o.has("inertia")) o.fail("inertia is required together with mass");
+    t.inertia = read_inertia(o);
+    if (t.inertia.is_zero()) o.fail("inertia", "inertia must be positive, got 0");
+    t.centre = o.vec3("centre", t.centre);
+    return t;
+}
+
+Clump read_single_clump(ObjectReader& o, const World& world, std::uint16_t replica)
+{
+    refuse_with_clump(o, {"radius", "material", "fixed", "attached_to", "force"});
+    Clump c{.shape = template_of(o, world),
+            .r = o.vec3("r"),
+            .v = o.vec3("v", Vec3{0, 0, 0}),
+            .omega = o.vec3("omega", Vec3{0, 0, 0}),
+            .scale = o.positive("scale", 1),
+            .replica = replica};
+    if (o.has("orientation")) c.e = read_orientation(o);
+    return c;
+}
+
+FilledClumps read_filled_clumps(ObjectReader& o, const World& world)
+{
+    FilledClumps f;
+    if (!o.has("clump")) {
+        if (o.has("orientation")) o.fail("orientation", "orientation is only for a fill with clump");
+        return f;
+    }
+    refuse_with_clump(o, {"material", "attached_to"});
+    f.shape = template_of(o, world);
+    const ClumpTemplate& t = world.clump_templates()[static_cast<std::size_t>(f.shape)];
+    f.radius = t.bounding_radius(), f.spheres = static_cast<std::uint32_t>(t.spheres.size());
+    if (o.has("orientation")) f.orientation = read_orientation(o);
+    return f;
+}
+
+Clump FilledClumps::at(const Particle& place, Random& random) const
+{
+    Clump c{
+        .shape = shape, .r = place.r, .v = place.v, .scale = place.radius / radius, .replica = place.replica};
+    if (orientation) {
+        c.e = *orientation;
+        return c;
+    }
+    // uniformly distributed rotations (Shoemake 1992)
+    const double u = random.number(), a = random.number(0, 2 * M_PI), b = random.number(0, 2 * M_PI),
+                 s = std::sqrt(1 - u), t = std::sqrt(u);
+    c.e = {s * std::sin(a), s * std::cos(a), t * std::sin(b), t * std::cos(b)};
+    return c;
+}
+
+}  // namespace hilda::granular

@@ -470,12 +470,9 @@ private:
     struct BodyPart;
     void place(const BodyPart& part);
     void place_parts();
-    bool has_parts(std::size_t boundary) const
-    {
-        return std::any_of(parts.begin(), parts.end(), [&](const BodyPart& p) { return p.body == boundary; });
-    }
+    bool has_parts(std::size_t boundary) const { return boundary < is_body.size() && is_body[boundary]; }
     void add_part_loads(std::vector<Wrench>& loads) const;
-    BoundaryVelocity velocity_of_move(std::size_t boundary) const;
+    void set_velocities_of_move(std::vector<BoundaryVelocity>& to) const;
     void find_tool_loads();
     void accelerate_tools(double part);
     Vec3 mean_omega_of(std::size_t boundary) const;
@@ -509,6 +506,7 @@ private:
         EulerParameters<double> p;  ///< rotation from the frame of the part to that of the body
     };
     std::vector<BodyPart> parts;
+    std::vector<bool> is_body;  ///< whether a boundary has parts; empty if none has
     std::vector<std::string> boundary_names;
     std::vector<Float4> forces;     ///< applied forces, by id [N]; empty if none is set
     std::vector<Particle> pending;  ///< particles added since the last insertion

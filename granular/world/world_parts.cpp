@@ -19,14 +19,14 @@ void World::set_part(int part, int body)
     if (b.body >= 0) refuse(where, "is a part already, of the boundary", b.body);
     if (to.body >= 0)
         refuse(where, "must be a part of a boundary that is not a part itself, of the boundary", body);
-    for (const BodyPart& other : parts)
-        if (other.body == static_cast<std::uint32_t>(part))
-            refuse(where, "has parts itself and must not be one of", body);
+    if (has_parts(static_cast<std::size_t>(part)))
+        refuse(where, "has parts itself and must not be one of", body);
     if (b.mass > 0) refuse(where, "must have no mass, because it is a part of a boundary", b.mass);
     const EulerParameters<double> back = {to.p.e0, -to.p.e};
     parts.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(body),
                      rotated_back(to.p, b.r - to.r), rotated_back(to.p, b.axis), product(back, b.p)});
     b.body = body, b.mass = to.mass;
+    is_body.resize(boundaries.size()), is_body[parts.back().body] = true;
     place(parts.back());
     start_balance();
     invalidate_neighbours();

@@ -55,14 +55,17 @@ Vec3 World::mean_omega_of(std::size_t k) const
     }
 }
 
-/// Velocity of a boundary in the move of the step: v, and the mean ω; of a part from those of its body
-BoundaryVelocity World::velocity_of_move(std::size_t k) const
+/// Sets the velocities of the boundaries in the move of the step: v, and the mean ω; of a part from those of
+/// its body
+void World::set_velocities_of_move(std::vector<BoundaryVelocity>& to) const
 {
-    const Boundary& b = boundaries[k];
-    if (b.body < 0) return {b.v, mean_omega_of(k)};
-    const Boundary& body = boundaries[static_cast<std::size_t>(b.body)];
-    const Vec3 omega = mean_omega_of(static_cast<std::size_t>(b.body));
-    return {body.v + omega.cross(b.r - body.r), omega};
+    to.resize(boundaries.size());
+    for (std::size_t k = 0; k < boundaries.size(); ++k)
+        if (boundaries[k].body < 0) to[k] = {boundaries[k].v, mean_omega_of(k)};
+    for (const BodyPart& part : parts) {
+        const auto [v, omega] = to[part.body];
+        to[part.number] = {v + omega.cross(boundaries[part.number].r - boundaries[part.body].r), omega};
+    }
 }
 
 /// Distance from Boundary::r of the points that the rotation of the boundary moves and that count for the
@@ -104,8 +107,8 @@ double World::move_boundaries()
     boundaries_rest = true;
     const double h = options.h;
     double largest = 0;
-    moved.resize(boundaries.size()), moved_to.resize(boundaries.size());
-    for (std::size_t k = 0; k < boundaries.size(); ++k) moved[k] = velocity_of_move(k);
+    set_velocities_of_move(moved);
+    moved_to.resize(boundaries.size());
     rotate_frames();
     for (std::size_t k = 0; k < boundaries.size(); ++k) {
         Boundary& b = boundaries[k];

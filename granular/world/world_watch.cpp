@@ -79,9 +79,10 @@ bool World::boundaries_move()
     }
     if (moves || free || placed) record.is_driven = 1;
     if (!moves) return false;
-    next_move.resize(boundaries.size());
-    for (std::size_t k = 0; k < boundaries.size(); ++k)
-        next_move[k] = options.scheme == Scheme::velocity_verlet ? moved[k] : velocity_of_move(k);
+    if (options.scheme == Scheme::velocity_verlet)
+        next_move = moved;
+    else
+        set_velocities_of_move(next_move);
     return true;
 }
 

@@ -64,6 +64,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "program",
       "stages",
       "validations",
+      "validations/comparison",
       "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},
     {"studies",

@@ -51,7 +51,7 @@ def texts(runs):
     for given, code, message in (
             ((), 2, "granular: CASE is required"),
             (("--sedd", "1"), 2, "granular: unknown option '--sedd'; did you mean '--seed'?"),
-            (("none",), 3, "none: does not exist; validations: brick, cratering, drum, head-on, hopper, low-velocity-cratering, oblique, repose, shear, stacking, waves, wheel; "
+            (("none",), 3, "none: does not exist; validations: brick, comparison-drum, comparison-penetration, comparison-silo, cratering, drum, head-on, hopper, low-velocity-cratering, oblique, repose, shear, stacking, waves, wheel; "
                           "cases: bed, fed_hopper, settle_push_load, shaken_box")):
         ended = runs.run(*given)
         expect(ended.returncode == code and ended.stderr == f"hilda: error: {message}\n",

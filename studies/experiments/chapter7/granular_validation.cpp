@@ -139,6 +139,9 @@ std::vector<std::string> files_of(const std::string& study)
     const std::map<std::string, std::vector<std::string>> tables = {
         {"granular-head-on", {"refinement.csv", "clamped.csv"}},
         {"granular-brick", {"motion.csv"}},
+        {"granular-comparison-drum", {"motion.csv", "grains.csv"}},
+        {"granular-comparison-penetration", {"motion.csv"}},
+        {"granular-comparison-silo", {"motion.csv"}},
         {"granular-cratering", {"motion.csv"}},
         {"granular-hopper", {"motion.csv"}},
         {"granular-drum", {"surface.csv", "grains.csv"}},

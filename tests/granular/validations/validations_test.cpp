@@ -73,12 +73,14 @@ TEST_CASE("the warnings of a validation are those of the watch over each of its 
 
 TEST_CASE("validations are listed by name, each with a description of one line", "[granular][validation]")
 {
-    // The functions of cratering, drum, low-velocity cratering, repose, shear, stacking, waves and wheel have
-    // separate tests. The validations take half a minute and more and are run as studies, as is
-    // hopper.
-    std::set<std::string> tested = {
-        "brick",   "cratering", "drum",  "head-on",  "hopper", "low-velocity-cratering",
-        "oblique", "repose",    "shear", "stacking", "waves",  "wheel"};
+    // The functions of the comparison cases, cratering, drum, low-velocity cratering, repose, shear,
+    // stacking, waves and wheel have separate tests. The validations take half a minute and more and are run
+    // as studies, as is hopper.
+    std::set<std::string> tested = {"brick",           "comparison-drum", "comparison-penetration",
+                                    "comparison-silo", "cratering",       "drum",
+                                    "head-on",         "hopper",          "low-velocity-cratering",
+                                    "oblique",         "repose",          "shear",
+                                    "stacking",        "waves",           "wheel"};
     std::string last;
     for (const Validation& v : hilda::io::Registry<Validation>::all()) {
         CHECK(last < v.name);

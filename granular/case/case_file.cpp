@@ -145,6 +145,7 @@ public:
         for (ObjectReader& i : o.objects("insert")) insertion(i);
         check_groups();
         out.outputs = read_outputs(o, world);
+        check_groups_of_fields();
         o.finish();
         check_mesh_sizes();
         check_widths();
@@ -230,13 +231,24 @@ private:
         return groups.number(name);
     }
 
+    void check_groups_of_fields() const
+    {
+        for (std::size_t k = 0; k < out.outputs.fields.size(); ++k)
+            if (const std::string& name = out.outputs.fields[k].group; !name.empty())
+                check_group("/fields/" + std::to_string(k) + "/group", name);
+    }
+
+    void check_group(const std::string& pointer, const std::string& name) const
+    {
+        if (std::find(groups.names.begin(), groups.names.end(), name) == groups.names.end())
+            out.source.fail(pointer, "no entry has the group" + io::with_nearest(name, groups.names));
+    }
+
     void check_groups() const
     {
         for (std::size_t k = 0; k < out.stage_specs.size(); ++k)
             for (const std::string& name : out.stage_specs[k].remove)
-                if (std::find(groups.names.begin(), groups.names.end(), name) == groups.names.end())
-                    out.source.fail("/stages/" + std::to_string(k) + "/remove",
-                                    "no entry has the group" + io::with_nearest(name, groups.names));
+                check_group("/stages/" + std::to_string(k) + "/remove", name);
     }
 
     void add_material(ObjectReader& o)

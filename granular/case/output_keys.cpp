@@ -123,6 +123,7 @@ FieldSpec read_field(ObjectReader& o, const WorldOptions& world, const std::stri
     const long replica = o.count("replica", 0);
     if (replica > 0xffff) o.fail("replica", "replica must be at most 65535, got " + std::to_string(replica));
     spec.replica = static_cast<int>(replica);
+    if (o.has("group")) spec.group = o.name("group");
     o.finish();
     return spec;
 }

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/case/groups.hpp"
 #include "granular/fields/field_sums.hpp"
 #include "granular/world/world.hpp"
 
@@ -10,7 +11,9 @@ namespace hilda::granular {
 
 /// The free particles of a replica at t and their contacts. Fixed particles and those attached to boundaries
 /// are parts of the boundaries: they have no density, and a contact with one of them is a contact with a
-/// boundary at the point on its surface.
-FieldInput field_input(const World& world, const std::vector<ContactRecord>& contacts, int replica);
+/// boundary at the point on its surface. With `groups` the particles outside of the group with this number
+/// are such parts as well.
+FieldInput field_input(const World& world, const std::vector<ContactRecord>& contacts, int replica,
+                       const Groups* groups = nullptr, int group = Groups::none);
 
 }  // namespace hilda::granular

@@ -17,7 +17,8 @@ struct FieldSpec {
     /// Number of instants of a row: the mean over equally spaced instants up to its time, or with 1 that
     /// instant
     long samples = 1;
-    int replica = 0;  ///< whose particles it has
+    int replica = 0;         ///< whose particles it has
+    std::string group = "";  ///< whose particles it has; empty: all
 };
 
 }  // namespace hilda::granular

@@ -25,6 +25,7 @@ public:
     {}
 
     int replica() const { return spec.replica; }
+    const std::string& group() const { return spec.group; }
     /// Whether the fields take the state after n steps. The start is not part of a mean.
     bool takes(long n) const { return n > 0 ? times.takes(n) : spec.samples == 1; }
     long next(long n) const { return times.next(n); }
@@ -84,7 +85,7 @@ private:
 
 class FieldOutputs final : public Sink {
 public:
-    explicit FieldOutputs(const CaseSetup& run) : world(*run.c.world)
+    explicit FieldOutputs(const CaseSetup& run) : c(run.c), world(*run.c.world)
     {
         for (const FieldSpec& spec : run.c.outputs.fields)
             all.push_back(std::make_unique<FieldOutput>(spec, run));
@@ -106,13 +107,17 @@ public:
     }
     void node(const World& w) override
     {
-        std::map<int, FieldInput> of_replica;
+        std::map<std::pair<int, std::string>, FieldInput> of_particles;
         std::optional<std::vector<ContactRecord>> contacts;
         for (auto& one : all) {
             if (!one->takes(w.steps())) continue;
             if (!contacts) contacts = finite_contacts(w);
-            const auto [in, is_new] = of_replica.try_emplace(one->replica());
-            if (is_new) in->second = field_input(w, *contacts, one->replica());
+            const auto [in, is_new] = of_particles.try_emplace({one->replica(), one->group()});
+            if (is_new && one->group().empty())
+                in->second = field_input(w, *contacts, one->replica());
+            else if (is_new)
+                in->second =
+                    field_input(w, *contacts, one->replica(), c.groups.get(), c.groups->number(one->group()));
             one->add(in->second, w.t(), w.steps());
         }
     }
@@ -136,6 +141,7 @@ public:
     }
 
 private:
+    const Case& c;
     const World& world;
     std::vector<std::unique_ptr<FieldOutput>> all;
 };

@@ -3,11 +3,12 @@
 
 #pragma once
 
-#include "granular/case/groups.hpp"
 #include "granular/world/world.hpp"
 #include "io/files.hpp"
 
 namespace hilda::granular {
+
+class Groups;
 
 /// One line per particle, ordered by id: id,material,radius,x,y,z,vx,vy,vz,omega_x,omega_y,omega_z, and
 /// e0,e1,e2,e3 if the world integrates orientations, and clump if it has templates of clumps: the id of the

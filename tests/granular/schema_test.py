@@ -72,7 +72,7 @@ EVERYTHING = {
                {"count": 3, "material": "steel", "radius": 0.01,
                 "region": {"type": "box", "low": [0, 0, 1.1], "high": [0.1, 0.1, 1.2]}}],
     "fields": [{"name": "slice", "low": [-1, -1, -1], "high": [3, 2, 3], "cells": [4, 1, 5], "kernel": "lucy", "width": 0.2,
-                "values": "averages", "edges": "closed", "interval": 0.4, "samples": 2, "replica": 0},
+                "values": "averages", "edges": "closed", "interval": 0.4, "samples": 2, "replica": 0, "group": "ball"},
                {"low": [0, 0, 0], "high": [1, 1, 1], "cells": [1, 1, 1], "width": 0.1, "values": "points", "interval": 1e-5}],
     "contacts": {"interval": 1e-5, "times": [0, 2e-5], "network": True}, "loads": {"interval": 0.4, "samples": 2},
     "stages": [{"name": "settle", "duration": 1e-5, "until": {"kinetic_energy": 1e-9, "share": 1e-4, "from": 1e-5, "interval": 1e-5},

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stages of a run of hilda-granular: their ends, their changes against closed forms, one result with interruptions, and errors.
-Groups of particles: their table, columns and removal.
+Groups of particles: their table, columns, fields and removal.
 
     stages_test.py PROGRAM
 """
@@ -182,12 +182,33 @@ def errors(runs):
             particles=[dict(GRAIN, r=[0.01, 0.01, 0.045], group="a,b")])
 
 
+def fields(runs):
+    """The fields of the groups add up to those of all particles, up to the forces between groups, which cancel"""
+    grid = {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08], "cells": [1, 1, 1], "width": 0.002, "edges": "closed",
+            "interval": 0.002}
+    case = runs.case("fields", **dict(RUN, end=0.07, stages=[], fields=[dict(grid, name="all")] + [
+        dict(grid, name=name, group=name) for name in ("ball", "bed", "lid", "fed")]))
+    runs.finish(case, "--output", "fields")
+    whole, *parts = (table(runs, "fields", f"fields-{name}.csv") for name in ("all", "ball", "bed", "lid", "fed"))
+    forces = 0
+    for rows in zip(whole, *parts):
+        for key, bound in ("density", 0), ("momentum_z", 0), ("boundary_force_z", 1):
+            one, others = float(rows[0][key]), [float(row[key]) for row in rows[1:]]
+            size = sum(map(abs, others))
+            expect(abs(one - sum(others)) <= 1e-9 * max(size, 1e-9), f"{key} at {rows[0]['t']}: {one} and {others}")
+            forces += bound * (size > 1.001 * abs(one))
+    expect(forces > 0, "groups have forces on each other")
+    runs.refused(runs.case("wrong", **dict(RUN, fields=[dict(grid, group="bedd")])), 3,
+                 r"\(/fields/0/group\): no entry has the group 'bedd'; did you mean 'bed'\?", "--output", "wrong")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
         closed_forms(runs)
         timeouts(runs)
         errors(runs)
+        fields(runs)
         one_result(runs)
     print("stages: closed forms, time-outs, errors, one result with interruptions; groups and their removal")
 

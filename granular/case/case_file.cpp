@@ -588,7 +588,10 @@ private:
 
 }  // namespace
 
-Case read_case(const std::string& text, const std::string& file, const Environment& environment)
+namespace {
+
+/// A case with the changes of the environment, before it is read
+Case changed_case(const std::string& text, const std::string& file, const Environment& environment)
 {
     Case out{.source = io::JsonSource(text, file)};
     out.source.folder = environment.folder;
@@ -599,6 +602,20 @@ Case read_case(const std::string& text, const std::string& file, const Environme
     out.notices = out.source.notices;
     if (environment.seed) set_seeds(out, *environment.seed);
     if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
+    return out;
+}
+
+}  // namespace
+
+io::JsonSource changed_source(const std::string& text, const std::string& file,
+                              const Environment& environment)
+{
+    return changed_case(text, file, environment).source;
+}
+
+Case read_case(const std::string& text, const std::string& file, const Environment& environment)
+{
+    Case out = changed_case(text, file, environment);
     CaseReader(out, environment).read();
     out.source.remove(key_without_effect);
     return out;

@@ -102,10 +102,13 @@ Continuation continued_run(const std::string& text, const std::string& file, con
                       first_file = directory + '/' + name_of_earlier_case(1),
                       given = exists(given_file) ? io::read_file(given_file, most_of_case)
                                                  : earlier.current_text();
-    const std::string now_given = canonical(text, file);
-    const bool is_edited = now_given != canonical(given, given_file);
-    // messages have the name of the given file if it has the whole case
-    const bool takes_file = is_edited || now_given == io::written(earlier.root);
+    const bool is_edited = canonical(text, file) != canonical(given, given_file);
+    const auto with_options = [&](const std::string& of, const std::string& name) {
+        return io::written(changed_source(of, name, environment).root);
+    };
+    // messages have the name of the given file if it gives the case with the same options
+    const bool takes_file =
+        is_edited || with_options(text, file) == with_options(earlier.current_text(), case_file);
     const std::string present = takes_file ? text : earlier.current_text();
     const std::string present_file = takes_file ? file : case_file;
 

@@ -146,8 +146,11 @@ void World::keep_particles(const std::vector<std::uint32_t>& kept, std::size_t f
     p.count = static_cast<std::uint32_t>(kept.size());
     inserted_count = kept.size();
     std::vector<std::uint32_t> kept_clumps;
-    for (std::uint32_t k = 0; k < side_of_clump.size(); ++k)
-        if (side_of_clump[k] < 0) kept_clumps.push_back(k);
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        if (const std::uint32_t c = clump_of(p.id.data()[k]);
+            c != no_clump && a.clump.data()[c].first_id == p.id.data()[k])
+            kept_clumps.push_back(c);
+    std::sort(kept_clumps.begin(), kept_clumps.end());
     keep(a.clump, kept_clumps);
     update_clump_tables();
 

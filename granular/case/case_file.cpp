@@ -67,8 +67,12 @@ void check_memory(const io::JsonSource& source, double particles, double largest
     double of_fields = 0;  // cells
     for (const FieldSpec& f : outputs.fields) of_fields += static_cast<double>(f.grid.count());
     std::uint16_t replicas = 0;
+    double of_clumps = 0;  // bytes: tables by particle and load of each particle, and the bodies
     for (const FillSpec& f : fills) {
         particles += estimated_count(f);
+        constexpr double of_particle = 2 * sizeof(std::uint32_t) + sizeof(Load),
+                         of_body = sizeof(ClumpBody) + sizeof(Clump);
+        if (f.clumps) of_clumps += estimated_count(f) * (of_particle + of_body / f.clumps.spheres);
         largest = std::max(largest, 2 * f.radius);
         replicas = std::max(replicas, f.replica);
     }
@@ -80,7 +84,8 @@ void check_memory(const io::JsonSource& source, double particles, double largest
     const double edge = largest * (1 + o.skin),
                  cells = (size.x / edge + 1) * (size.y / edge + 1) * (size.z / edge + 1) * (replicas + 1.);
     const auto in_world = [&](Device::Kind device) {
-        return 1e-3 * static_cast<double>(World::bytes_needed(1000, rotation_laws, o.orientation, device));
+        return 1e-3 * static_cast<double>(World::bytes_needed(1000, rotation_laws, o.orientation, device)) +
+               (of_clumps > 0 ? of_clumps / particles : 0);
     };
     const auto check = [&](const char* place, double many, const char* of, double each, std::size_t have,
                            const char* where) {

@@ -184,6 +184,27 @@ struct ListIds {
     HILDA_HD void operator()(std::uint32_t k) const { index[id[k]] = k; }
 };
 
+/// exp(angle/2) ⊗ p, with one Newton step of the normalisation p·p = 1; see rotation_increment(). Below
+/// 0.5 rad its series are short, with truncation errors below the rounding error.
+HILDA_HD inline EulerParameters<double> clump_turned(const Vec3& angle, const EulerParameters<double>& p)
+{
+    const double q = 0.25 * angle.dot(angle);  // the square of half the angle
+    if (!(q < 1. / 16)) {
+        const EulerParameters<double> d = rotation_increment(angle, p);
+        return {p.e0 + d.e0, p.e + d.e};
+    }
+    const double length = 1 + 0.5 * (1 - (p.e0 * p.e0 + p.e.dot(p.e)));
+    const double c =
+        length *
+        (1 - q * (1. / 2 - q * (1. / 24 - q * (1. / 720 - q * (1. / 40320 -
+                                                               q * (1. / 3628800 - q * (1. / 479001600)))))));
+    const Vec3 s =
+        (0.5 * length *
+         (1 - q * (1. / 6 - q * (1. / 120 - q * (1. / 5040 - q * (1. / 362880 - q * (1. / 39916800))))))) *
+        angle;
+    return {c * p.e0 - s.dot(p.e), c * p.e + p.e0 * s + s.cross(p.e)};
+}
+
 /// The arrays of the members
 struct MemberView {
     CellGrid grid;
@@ -200,12 +221,12 @@ struct MemberView {
         return rotated(b.p, b.scale * sphere_of_b.X);
     }
 
-    /// Moves a coordinate to that of the body and d [m], and returns the remainder [units]. An offset of zero
-    /// gives the integers of the body.
+    /// Moves a coordinate to that of the body and d [units], and returns the remainder [units]. An offset of
+    /// zero gives the integers of the body.
     HILDA_HD float approach(std::int32_t& at, std::int64_t from, std::int64_t body, float remainder, double d,
                             int axis) const
     {
-        const double units = d / grid.unit + remainder, whole = rint(units);
+        const double units = d + remainder, whole = rint(units);
         std::int64_t way = body + static_cast<std::int64_t>(whole) - from;
         if (grid.periodic[axis] != 0) {
             const std::int64_t length = std::int64_t{grid.width[axis]} * grid.cells[axis];
@@ -225,15 +246,16 @@ struct MemberView {
         const Vec<float> rest = unpack_remainder<float>(b.compensation.displacement);
         const std::int64_t x = coordinate(grid, b.position, 0), y = coordinate(grid, b.position, 1),
                            z = coordinate(grid, b.position, 2);
+        const double per_unit = s.reach > 0 ? 1 / grid.unit : 0;
         for (std::uint32_t m = 0; m < s.count; ++m) {
             const std::uint32_t k = index[b.first_id + m];
             const ClumpSphere& one = sphere[s.first + m];
             const bool centred = one.X.x == 0 && one.X.y == 0 && one.X.z == 0;
-            const Vec3 d = offset(b, one);
+            const Vec3 d = centred ? Vec3{0, 0, 0} : offset(b, one), units = per_unit * d;
             Position p = position[k];
-            const Vec<float> remainder{approach(p.x, coordinate(grid, p, 0), x, rest.x, d.x, 0),
-                                       approach(p.y, coordinate(grid, p, 1), y, rest.y, d.y, 1),
-                                       approach(p.z, coordinate(grid, p, 2), z, rest.z, d.z, 2)};
+            const Vec<float> remainder{approach(p.x, coordinate(grid, p, 0), x, rest.x, units.x, 0),
+                                       approach(p.y, coordinate(grid, p, 1), y, rest.y, units.y, 1),
+                                       approach(p.z, coordinate(grid, p, 2), z, rest.z, units.z, 2)};
             const SplitDisplacement<float> split = split_displacement(remainder, 0);
             position[k] = {p.cell, wrapped_sum(p.x, split.x), wrapped_sum(p.y, split.y),
                            wrapped_sum(p.z, split.z)};
@@ -314,11 +336,10 @@ struct AdvanceClump {
             p.x = wrapped_sum(p.x, units.x), p.y = wrapped_sum(p.y, units.y), p.z = wrapped_sum(p.z, units.z);
             Vec3 angle{moved.rotation.x, moved.rotation.y, moved.rotation.z};  // h w of the step
             if (!s.is_isotropic()) angle = rotated(b.p, clump_rotation(s, rotated_back(b.p, angle)));
-            rate = angle.norm() / step.h;
-            if (!(rate * step.h < 1e9))
-                return static_cast<float>(0 * to_double(b.momentum).norm() + HUGE_VAL);
-            const EulerParameters<double> d = rotation_increment(angle, b.p);
-            b.p = {b.p.e0 + d.e0, b.p.e + d.e};
+            const double square = angle.dot(angle);
+            if (s.reach > 0) rate = sqrt(square) / step.h;
+            if (!(square < 1e18)) return static_cast<float>(0 * to_double(b.momentum).norm() + HUGE_VAL);
+            b.p = clump_turned(angle, b.p);
         }
         body[c] = b;
         members.place(b);

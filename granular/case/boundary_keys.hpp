@@ -4,7 +4,7 @@
 #pragma once
 
 #include "granular/case/object_reader.hpp"
-#include "granular/case/solid_body.hpp"
+#include "granular/mesh/solid_body.hpp"
 #include "granular/mesh/triangle_mesh.hpp"
 #include "io/type_schema.hpp"
 

@@ -5,6 +5,7 @@
 #include "granular/case/continued_case.hpp"
 #include "granular/case/falling_tools.hpp"
 #include "granular/case/fill.hpp"
+#include "granular/case/mesh_notices.hpp"
 #include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
 #include "granular/fields/field_sums.hpp"
@@ -152,7 +153,7 @@ public:
         out.outputs = read_outputs(o, world);
         check_groups_of_fields();
         o.finish();
-        check_mesh_sizes();
+        meshes.check_sizes(*out.world, largest_diameter(), out.notices);
         check_widths();
         double inserted = 0;
         if (out.insertions != nullptr)
@@ -163,6 +164,7 @@ public:
             check_memory(out.source, static_cast<double>(out.world->count()), largest, world, rotation_laws,
                          fills, inserted, out.outputs, available);
             add_fills();
+            meshes.check_sides(*out.world, out.notices);
             if (out.insertions == nullptr)
                 for (const FallingTool& tool : falling_tools(*out.world, out.boundaries, world.gravity))
                     out.notices.push_back(place_of(tool.boundary) + ": " + tool.text);
@@ -300,43 +302,6 @@ private:
                                       what);
     }
 
-    /// Notes meshes that are much larger than the domain or smaller than the particles, as with other units.
-    void check_mesh_sizes()
-    {
-        const double domain = (out.world->high() - out.world->low()).norm();
-        const double diameter = largest_diameter();
-        for (const auto& [place, size] : meshes)
-            if (size > 100 * domain || size < 0.1 * diameter)
-                out.notices.push_back(place + ": the mesh is " + io::shortest(size) + " m long, " +
-                                      (size > domain
-                                           ? "the domain " + io::shortest(domain)
-                                           : "the diameter of a particle " + io::shortest(diameter)) +
-                                      " m: its coordinates must be in m, or have the key scale");
-    }
-
-    /// Notes a mesh that reaches a periodic side, across which it has no images, or is outside of the domain.
-    void check_place(const ObjectReader& o, const NamedBoundary& b)
-    {
-        BoundingBox box;
-        for (const Vec3& v : b.mesh->vertex) box.add(b.boundary.r + rotated(b.boundary.p, v));
-        meshes.emplace_back(o.place(), (box.high - box.low).norm());
-        const Vec3 low = out.world->low(), high = out.world->high();
-        for (const auto& [axis, from, to, least, most] :
-             {std::tuple{0u, box.low.x, box.high.x, low.x, high.x},
-              {1u, box.low.y, box.high.y, low.y, high.y},
-              {2u, box.low.z, box.high.z, low.z, high.z}}) {
-            const std::string place = o.place() + ": the mesh ";
-            if (to < least || from > most)
-                out.notices.push_back(place + "is outside of the domain along " + "xyz"[axis]);
-            else if (world.periodic[axis] && (from <= least || to >= most))
-                out.notices.push_back(
-                    place + "reaches a periodic side along " + "xyz"[axis] +
-                    ", across which it has no images: it acts as a periodic one only if its "
-                    "shape does not change along this axis and it extends beyond both sides "
-                    "by the radius of a particle");
-        }
-    }
-
     /// Reads the boundaries of an entry.
     void read_boundaries(ObjectReader& o)
     {
@@ -403,7 +368,7 @@ private:
         n.motion.boundary = o.located([&] {
             return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
         });
-        if (n.mesh) check_place(o, n);
+        if (n.mesh) meshes.add(o.place(), n, *out.world, out.notices);
         n.mesh.reset();  // the world has its triangles
         if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
         if (n.part_of.empty() ? n.moves() : find(n.part_of)->moves()) out.moving.push_back(n.motion.boundary);
@@ -580,10 +545,10 @@ private:
     std::map<std::pair<int, int>, std::string> law_places;  ///< by the smaller and the larger material index
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
     std::vector<std::pair<NamedBoundary, ObjectReader>> bounds;  ///< with their entries
-    std::vector<std::pair<std::string, double>> meshes;          ///< places and diagonals [m]
-    std::size_t boundary_entry = 0;                              ///< of the entry that is read
-    std::string free;    ///< pointer of the first boundary with a mass
-    double largest = 0;  ///< diameter of the particles that are given one by one [m]
+    MeshNotices meshes;
+    std::size_t boundary_entry = 0;  ///< of the entry that is read
+    std::string free;                ///< pointer of the first boundary with a mass
+    double largest = 0;              ///< diameter of the particles that are given one by one [m]
     bool rotation_laws = false;
     std::vector<FillSpec> fills;
     std::vector<ObjectReader> fill_places;

@@ -217,7 +217,9 @@ void Stages::transfer(io::Archive& a)
 io::Json Stages::summary(double t) const
 {
     // without the rounding error of the product
-    const auto rounded = [](double time) { return std::strtod(io::formatted("%.12g", time).c_str(), nullptr); };
+    const auto rounded = [](double time) {
+        return std::strtod(io::formatted("%.12g", time).c_str(), nullptr);
+    };
     constexpr const char* reasons[] = {"end of the run", "condition", "duration"};
     io::Json all = io::Json::array();
     for (std::size_t k = 0; k < log.size(); ++k)

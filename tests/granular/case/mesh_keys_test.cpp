@@ -166,3 +166,20 @@ TEST_CASE("a mesh in other units than the case gives a warning", "[granular][mes
     CHECK(notice("1000").find("m long, the domain 3.46") != std::string::npos);
     CHECK(notice("1e-4").find("m long, the diameter of a particle 0.02 m") != std::string::npos);
 }
+
+TEST_CASE("particles outside of a closed mesh that faces inwards are noticed", "[granular][mesh][case]")
+{
+    const auto notices = [](const std::string& members) { return read(members).notices; };
+    // The particle is at (0, 0, 0.9).
+    const std::vector<std::string> below =
+        notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]})");
+    REQUIRE(below.size() == 1);
+    CHECK_THAT(below[0],
+               Catch::Contains("the mesh is closed and its normals point inwards, but 1 of 1 particles "
+                               "are outside of it"));
+    CHECK(notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.95]})").empty());
+    CHECK(notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5], "inside": false})").empty());
+    CHECK(notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5], "open": ["+z"]})").empty());
+    CHECK(
+        notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]}, "two_sided": true)").empty());
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/case/solid_body.hpp"
+#include "granular/mesh/solid_body.hpp"
 
 #include <numbers>
 

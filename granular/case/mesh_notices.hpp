@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Notices about meshes that are probably not what the author of a case means: coordinates in other units, a place
-/// outside of the domain, normals that point away from the particles.
+/// Notices about meshes that are probably not what the author of a case means: coordinates in other units,
+/// a place outside of the domain, normals that point away from the particles.
 
 #pragma once
 

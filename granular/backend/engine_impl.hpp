@@ -275,7 +275,7 @@ public:
                                  .force = force.size() > 0 ? force.data() : nullptr,
                                  .id = p.id.data(),
                                  .step = step,
-                                 .total = particle_loads.data()};
+                                 .total = clump_of.size() > 0 ? particle_loads.data() : nullptr};
         const float of_particles = advance_particles(arrays);
         if (own.clump.size() == 0) return of_particles;
         // The members have been advanced as particles of their own. They are placed again.

@@ -275,8 +275,10 @@ struct MemberView {
             } else {
                 omega[k] = {static_cast<float>(turns.x), static_cast<float>(turns.y),
                             static_cast<float>(turns.z), b.momentum.w};
-                if (orientation != nullptr) orient(k, b.p, s.axes);
             }
+            // A clump that is one sphere has integrated its orientation as that of a particle.
+            const bool is_particle = s.count == 1 && centred && s.is_isotropic() && radius == b.velocity.w;
+            if (orientation != nullptr && !is_particle) orient(k, b.p, s.axes);
             compensation[k] = c;
         }
     }

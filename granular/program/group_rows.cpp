@@ -37,10 +37,19 @@ private:
             if (group == Groups::none) return;
             Sums& sums = all[static_cast<std::size_t>(group)];
             ++sums.particles;
+            if (p.clump >= 0) return;  // below
             sums.of.add(p, w.gravity());
             if (p.fixed) return;
             sums.mass += p.mass, sums.moment += p.mass * p.r;
         });
+        for (const Clump& clump : w.clumps()) {
+            const int group = c.groups->of(clump.id);
+            if (group == Groups::none) continue;
+            Sums& sums = all[static_cast<std::size_t>(group)];
+            sums.of.kinetic_energy += 0.5 * (clump.mass * clump.v.dot(clump.v) + clump.L.dot(clump.omega));
+            sums.of.momentum += clump.mass * clump.v;
+            sums.mass += clump.mass, sums.moment += clump.mass * clump.r;
+        }
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Sums& sums = all[k];
             text += io::formatted("%.12g,%zu,%s,%zu,%.9g,%.9g", w.t(), k, c.groups->names[k].c_str(),

@@ -133,7 +133,8 @@ Domain World::domain_of(const std::vector<Particle>& all) const
     double cell = cell_diameter(diameters, in.skin);
     if (!set_cells(grid, cell + in.skin, in.replicas)) cell = largest;
     // The particles of a clump can be outside the domain, by less than a cell.
-    double edge = std::max(cell, reach_of_clumps()) + in.skin;
+    const double reach = reach_of_clumps(), least = std::max(largest, reach) + in.skin;
+    double edge = std::max(cell, reach) + in.skin;
     // Cells that are wider than necessary make the length unit coarser.
     constexpr double largest_factor = 8;
     while (!set_cells(grid, edge, in.replicas)) {
@@ -148,12 +149,14 @@ Domain World::domain_of(const std::vector<Particle>& all) const
         grid.low[k] = low[k];
         grid.periodic[k] = options.periodic[k];
         const double length = high[k] - low[k];
-        if (options.periodic[k] && length < 3 * (largest + in.skin))
+        // three cells, so that a particle has each other one once
+        if (options.periodic[k] && length < 3 * least)
             refuse("domain",
-                   io::formatted(
-                       "must be at least %.5g m wide along %c, a periodic axis: three times the largest "
-                       "diameter and the skin",
-                       1.0001 * 3 * (largest + in.skin), 'x' + k),
+                   io::formatted("must be at least %.5g m wide along %c, a periodic axis: three times the %s "
+                                 "and the skin",
+                                 1.0001 * 3 * least, 'x' + k,
+                                 reach > largest ? "distance of a sphere from the centre of mass of its clump"
+                                                 : "largest diameter"),
                    length);
         if (options.periodic[k]) widest = std::max(widest, length / grid.cells[k]);
     }

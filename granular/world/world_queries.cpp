@@ -52,7 +52,18 @@ void World::each_particle(const std::function<void(const Particle&)>& f) const
                   [&](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
     }
     for (const std::uint32_t k : order) f(particle_at(k));
-    for (const Particle& p : pending) f(p);
+    for (const Particle& p : pending) {
+        if (p.clump < 0) {
+            f(p);
+            continue;
+        }
+        const auto of = std::lower_bound(pending_clumps.begin(), pending_clumps.end(), p.clump,
+                                         [](const Clump& c, std::int64_t first) { return c.id < first; });
+        const ClumpShape& shape = clump_tables.shape[static_cast<std::size_t>(of->shape)];
+        Particle part = p;
+        part.mass *= clump_tables.sphere[shape.first + static_cast<std::uint32_t>(p.id - p.clump)].fraction;
+        f(part);
+    }
 }
 
 std::vector<Particle> World::particles() const

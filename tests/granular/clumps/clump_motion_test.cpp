@@ -304,3 +304,64 @@ TEST_CASE("invalid clumps are refused with place and value", "[granular][clumps]
         tube.add_clump(Clump{.shape = rod}),
         StartsWith("clump of particle 0: along x, a periodic axis, the domain must be at least 1.1"));
 }
+
+TEST_CASE("particles can be added after the last clump has left", "[granular][clumps][outflow]")
+{
+    WorldOptions options = room(1e-4);
+    options.outflow = {false, true, false, false, false, false};
+    World world = glass_world(options);
+    world.add_clump(Clump{.shape = world.add_template(solid_clump("pair", pair, glass().density)),
+                          .r = {19 * R, 0, 0},
+                          .v = {0.5, 0, 0}});
+    while (world.count() > 0 && world.steps() < 1000) world.step();
+    REQUIRE(world.count() == 0);
+    for (int k = 0; k < 500; ++k)
+        world.add(Particle{.r = {(k % 10 - 5) * 3 * R, (k / 10 % 10 - 5) * 3 * R, (k / 100 - 2) * 3 * R},
+                           .radius = R,
+                           .v = {0.01, 0, 0}});
+    world.step(10);
+    for (const Particle& p : world.particles()) CHECK((p.v - Vec3{0.01, 0, 0}).norm() < 1e-9);
+}
+
+TEST_CASE("a periodic axis must be three times as long as the reach of a clump", "[granular][clumps]")
+{
+    WorldOptions options = room(1e-5);
+    options.low = {0, 0, 0}, options.high = {18 * R, 40 * R, 40 * R};
+    options.periodic = {true, false, false};
+    World world = glass_world(options);
+    const int rod = world.add_template(
+        solid_clump("rod", {{{-6.5 * R, 0, 0}, R}, {{0, 0, 0}, R}, {{6.5 * R, 0, 0}, R}}, glass().density));
+    world.add_clump(Clump{.shape = rod, .r = {9 * R, 20 * R, 20 * R}});
+    CHECK_THROWS_WITH(world.step(),
+                      Catch::Matchers::Contains("along x, a periodic axis: three times the distance "
+                                                "of a sphere from the centre of mass of its clump"));
+}
+
+TEST_CASE("the spheres of a clump keep its orientation, also of one with equal moments", "[granular][clumps]")
+{
+    WorldOptions options = room(1e-5);
+    options.orientation = true, options.gravity = {0, 0, -9.81};
+    World world = glass_world(options);
+    world.add(Boundary{.r = {0, 0, -3 * R}});
+    std::vector<Sphere> octahedron;
+    for (const double s : {-1., 1.})
+        for (const Vec3& e : {Vec3{s, 0, 0}, {0, s, 0}, {0, 0, s}}) octahedron.push_back({R * e, R});
+    const int shape = world.add_template(solid_clump("octahedron", octahedron, glass().density));
+    world.add_clump(Clump{.shape = shape, .v = {0.3, 0, 0}, .omega = {10, 20, 30}});
+    world.step(4000);
+    const EulerParameters<double> p = orientation(world.clumps()[0]);
+    CHECK(angle(p, {1, {0, 0, 0}}) > 0.1);
+    for (const Particle& one : world.particles())
+        CHECK(angle({one.e[0], {one.e[1], one.e[2], one.e[3]}}, p) < 1e-5);
+}
+
+TEST_CASE("the limits of the step are the same before and after the insertion of clumps",
+          "[granular][clumps]")
+{
+    World world = glass_world(room(1e-6));
+    world.add_clump(Clump{.shape = world.add_template(solid_clump("three", three, glass().density))});
+    const World::StepLimits before = world.step_limits();
+    world.step();
+    CHECK(world.step_limits().collision == Approx(before.collision).epsilon(1e-6));
+    CHECK(world.step_limits().rayleigh == Approx(before.rayleigh).epsilon(1e-6));
+}

@@ -55,22 +55,37 @@ std::vector<Particle> InsertionSpec::samples() const
 
 Insertion::Insertion(const InsertionSpec& of) : spec(of) { state.random = spec.seed; }
 
-double Insertion::due(double t) const
+double Insertion::due(const InsertionSpec& of, double t) const
 {
-    if (!base.is_set || (spec.rate == 0 && spec.mass_rate == 0)) return spec.due(t);
-    return (spec.mass_rate > 0 ? base.mass : static_cast<double>(base.count)) + spec.due(t, base.t);
+    const double earlier = of.mass_rate > 0 ? base.mass : static_cast<double>(base.count);
+    if (!of.active) return base.is_set ? earlier : 0;
+    if (!base.is_set || (of.rate == 0 && of.mass_rate == 0)) return of.due(t);
+    return earlier + of.due(t, base.t);
+}
+
+void Insertion::restart(double t)
+{
+    if (spec.rate == before.rate && spec.mass_rate == before.mass_rate && spec.active == before.active)
+        return;
+    Base now{true, t, state.count, state.mass};
+    if (before.mass_rate > 0)
+        now.mass = std::max(now.mass, due(before, t));
+    else if (before.rate > 0)
+        now.count = std::max(now.count, static_cast<std::int64_t>(due(before, t)));
+    base = now;
 }
 
 bool Insertion::is_due(const State& now, double t) const
 {
-    if (now.count >= spec.count || !spec.active) return false;
-    if (spec.mass_rate == 0) return static_cast<double>(now.count) < due(t);
+    if (now.count >= spec.count) return false;
+    if (spec.mass_rate == 0) return static_cast<double>(now.count) < due(spec, t);
     // the inserted mass is the closest one to that which is due
-    return now.mass + stored_mass(now.radius, spec.density) / 2 <= due(t);
+    return now.mass + stored_mass(now.radius, spec.density) / 2 <= due(spec, t);
 }
 
 void Insertion::set_flow(const InsertionSpec& of)
 {
+    before = spec;
     spec.rate = of.rate, spec.mass_rate = of.mass_rate, spec.to = of.to;
     spec.v = of.v, spec.random_v = of.random_v, spec.active = of.active;
 }

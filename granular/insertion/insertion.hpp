@@ -78,14 +78,15 @@ public:
 
     /// Takes the amounts, velocities and `active` of another entry.
     void set_flow(const InsertionSpec& of);
-    /// The amounts are due from this time on, besides those that were inserted before.
-    void restart(double t) { base = {true, t, state.count, state.mass}; }
+    /// After set_flow() at the time t: the new amounts are due from this time on, besides those that were due
+    /// until then. Without effect if amounts and `active` are as before.
+    void restart(double t);
     /// Transfers the time of restart(), which is not part of transfer().
     void transfer_base(io::Archive& a);
     bool is_restarted() const { return base.is_set; }
 
 private:
-    /// Time of the last restart() [s], and what was inserted before it [, kg]
+    /// Time of the last restart() [s], and what was due until then [, kg]
     struct Base {
         bool is_set = false;
         double t = 0;
@@ -93,7 +94,7 @@ private:
         double mass = 0;
     };
     /// Number of particles that are due until t, or their mass [kg] with a mass_rate
-    double due(double t) const;
+    double due(const InsertionSpec& of, double t) const;
 
     /// Written to checkpoints as bytes, without padding
     struct State {
@@ -108,7 +109,7 @@ private:
     bool is_due(const State& now, double t) const;
     [[noreturn]] void throw_blocked(const State& now, double t) const;
 
-    InsertionSpec spec;
+    InsertionSpec spec, before;  ///< before: the last set_flow()
     State state;
     Base base;
 };

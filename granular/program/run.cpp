@@ -217,6 +217,11 @@ private:
                 if (line.is_due()) line.show(progress());
             }
             check_state();  // also the forces, which contacts.csv has
+            if (c.stages != nullptr && w.steps() >= steps)
+                c.stages->end_run(w, [&](const std::string& text) {
+                    line.clear();
+                    warn(text);
+                });
         } catch (const io::NumericalFailure& e) {
             line.clear();
             io::report(e);

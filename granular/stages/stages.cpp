@@ -50,6 +50,14 @@ std::string without_place(const std::string& message, const std::string& origin)
     return message.substr(open + 2, close - open - 2) + ": " + what;
 }
 
+/// Number of the particles that can move and of the clumps
+std::size_t free_bodies(const World& w)
+{
+    std::size_t number = w.clumps().size();
+    w.each_particle([&](const Particle& p) { number += !p.fixed && p.clump < 0 ? 1 : 0; });
+    return number;
+}
+
 bool is_of_stage(const CaseChange& change)
 {
     return change.is_possible() &&
@@ -76,10 +84,12 @@ Stages::Stages(const Case& c, const Environment& environment) : spec(c.stage_spe
                 source.set(now.pointers.back() + '=' + io::written(value), origin);
             }
             const io::JsonSource after(io::written(source.root), "", std::size_t{1} << 28);
-            for (const CaseChange& change : changes_of(before.root, after.root))
+            for (const CaseChange& change : changes_of(before.root, after.root)) {
                 if (!is_of_stage(change))
                     c.source.fail(place,
                                   change.pointer + " cannot be set by a stage; " + changeable_in_stage);
+                now.pointers.push_back(change.pointer);  // also below an entry that is set as a whole
+            }
             now.c = std::make_shared<const Case>(read_case(source, here));
             Case checked = read_case(c.source, here);
             take_over(checked, *now.c, now.pointers);  // the laws
@@ -151,8 +161,9 @@ bool Stages::is_at_rest(const World& w)
     const RestCondition& rest = *what().until;
     const long since = w.steps() - log.back().start, interval = steps_in(rest.interval);
     if (since == 0 || since % interval != 0) return false;
-    const double energy = w.kinetic_energy(),
-                 number = static_cast<double>(std::max<std::size_t>(1, w.count()));
+    const std::size_t bodies = free_bodies(w);
+    if (bodies == 0) return false;
+    const double energy = w.kinetic_energy(), number = static_cast<double>(bodies);
     largest_energy = std::max(largest_energy, energy);
     if (static_cast<double>(since) * h < rest.from * (1 - 1e-12)) return false;
     return (!rest.kinetic_energy || energy / number <= *rest.kinetic_energy) &&
@@ -169,16 +180,7 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
         const bool is_late =
             (s.duration && since >= steps_in(*s.duration)) || (s.end && w.steps() >= steps_in(*s.end));
         if (!rests && !is_late) return;
-        if (!rests && s.until) {
-            const std::string message = io::formatted(
-                "stage '%s': its condition is not met until t = %.9g s, after %.9g s: the kinetic energy is "
-                "%.3g J of "
-                "%zu particles, %.3g of the largest one in the stage",
-                s.name.c_str(), w.t(), static_cast<double>(since) * h, w.kinetic_energy(), w.count(),
-                largest_energy > 0 ? w.kinetic_energy() / largest_energy : 1.);
-            if (s.fails) throw StageFailed("stage_timeout", message);
-            warn(message);
-        }
+        if (!rests && s.until) report_condition(w, warn);
         const Part before = log.back();
         log.back().end = w.steps(), log.back().reason = rests ? condition : duration;
         if (is_last()) {
@@ -193,6 +195,26 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
             throw StageFailed("stage_motion", e.what());
         }
     }
+}
+
+/// Warns that the condition of the present stage is not met, or throws StageFailed.
+void Stages::report_condition(const World& w, const std::function<void(const std::string&)>& warn) const
+{
+    const StageSpec& s = what();
+    const double energy = w.kinetic_energy();
+    const std::string message = io::formatted(
+        "stage '%s': its condition is not met until t = %.9g s, after %.9g s: the kinetic energy is %.3g J "
+        "of "
+        "%zu free particles and clumps, %.3g of the largest one in the stage",
+        s.name.c_str(), w.t(), static_cast<double>(w.steps() - log.back().start) * h, energy, free_bodies(w),
+        largest_energy > 0 ? energy / largest_energy : 1.);
+    if (s.fails) throw StageFailed("stage_timeout", message);
+    warn(message);
+}
+
+void Stages::end_run(const World& w, const std::function<void(const std::string&)>& warn)
+{
+    if (!is_over && what().until && !is_at_rest(w)) report_condition(w, warn);
 }
 
 void Stages::transfer(io::Archive& a)

@@ -27,6 +27,8 @@ public:
     /// Ends the present stage before a step if it is over, and begins the next one. `warn` receives the
     /// message of a condition that is not met in time. Throws StageFailed.
     void update(Case& c, const std::function<void(const std::string&)>& warn);
+    /// After the last step of the run: as update() if the present stage has a condition that is not met.
+    void end_run(const World& w, const std::function<void(const std::string&)>& warn);
     /// Whether the last stage is over, and with it the run
     bool have_ended() const { return is_over; }
     long number() const { return static_cast<long>(log.size()) - 1; }  ///< of the present stage
@@ -59,6 +61,7 @@ private:
 
     void begin(Case& c);
     bool is_at_rest(const World& w);
+    void report_condition(const World& w, const std::function<void(const std::string&)>& warn) const;
     long steps_in(double time) const;
 
     std::vector<StageSpec> spec;

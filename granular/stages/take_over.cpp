@@ -93,6 +93,28 @@ void check_place(const Case& c, const Case& changed, const BoundaryMotion& m)
             w.t(), b.r.x, b.r.y, b.r.z, r.x, r.y, r.z));
 }
 
+/// Throws io::PlacedError if numbers of v or omega have a part along or about a free axis, where the loads
+/// determine the motion.
+void check_velocities(const Case& c, const Case& changed, const std::vector<std::string>& pointers)
+{
+    for (int number = 0; number < static_cast<int>(c.boundaries.size()); ++number) {
+        const Boundary& b = changed.world->all_boundaries()[static_cast<std::size_t>(number)];
+        if (!(b.mass > 0)) continue;
+        const auto check = [&](const char* key, const Vec3& value, int first) {
+            const std::string pointer = entry_of(c, number) + '/' + key;
+            const double of[] = {value.x, value.y, value.z};
+            for (int axis = 0; axis < 3; ++axis)
+                if (includes(pointers, pointer) && b.free[first + axis] && of[axis] != 0)
+                    changed.source.fail(
+                        pointer, io::formatted("%s of a tool can be changed along the axes that are not "
+                                               "free only, it must be 0 along %c, got %.9g",
+                                               key, 'x' + axis, of[axis]));
+        };
+        check("v", b.v, 0);
+        if (!b.inertia.is_zero()) check("omega", b.omega, 3);
+    }
+}
+
 /// Sets the velocities and loads that are numbers.
 void set_numbers(Case& c, const Case& changed, const std::vector<std::string>& pointers)
 {
@@ -119,6 +141,7 @@ void set_numbers(Case& c, const Case& changed, const std::vector<std::string>& p
 void take_over(Case& c, const Case& changed, const std::vector<std::string>& pointers, double start)
 {
     check_laws(c, changed);
+    check_velocities(c, changed, pointers);
     if (includes(pointers, "/gravity")) c.world->set_gravity(changed.world->gravity());
     if (includes(pointers, "/laws")) c.world->set_laws(changed.world->all_laws());
     take_over_motions(c, changed, pointers, start);

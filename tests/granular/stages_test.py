@@ -147,6 +147,11 @@ def timeouts(runs):
     case = runs.case("short", **dict(RUN, end=0.001, stages=stages))
     err = runs.finish(case, "--output", "short")
     expect("hilda: warning: the run has ended in stage 'settle', before its last stage" in err, f"{err}")
+    last = runs.case("last", **dict(RUN, end=0.002, stages=[dict(stages[0], on_timeout="fail")]))
+    runs.refused(last, 4, r"\[stage_timeout\]: " + message, "--output", "last")
+    empty = [{"name": "fill", "duration": 0.003, "until": {"share": 1, "interval": 1e-4}}]
+    err = runs.finish(runs.case("empty", **dict(RUN, end=0.003, particles=[], fill=[], insert=[], stages=empty)), "--output", "empty")
+    expect("its condition is not met until t = 0.003 s" in err, f"no grains: {err}")
     jump = [{"name": "first", "duration": 1e-3}, {"name": "second", "set": {"/boundaries/floor/r": [0, 0, "1e-3*(1+t)"]}}]
     runs.refused(runs.case("jump", **dict(RUN, stages=jump)), 4, r"\[stage_motion\]: .*the formula must begin at the place of the boundary",
                  "--output", "jump")
@@ -182,6 +187,29 @@ def errors(runs):
             particles=[dict(GRAIN, r=[0.01, 0.01, 0.045], group="a,b")])
 
 
+def whole_entries(runs):
+    """A boundary that is set as a whole moves as by its keys"""
+    moved = dict(RUN["boundaries"][0], v=[0, 0, -0.01])
+    for value in {"/boundaries/floor/v": [0, 0, -0.01]}, {"/boundaries/floor": moved}, {"/boundaries": [moved, RUN["boundaries"][1]]}:
+        stages = [{"name": "rest", "duration": 1e-3}, {"name": "move", "duration": 1e-3, "set": value}]
+        runs.finish(runs.case("entry", **dict(RUN, stages=stages)), "--force", "--output", "entry")
+        z = float(table(runs, "entry")[-1]["floor_z"])
+        expect(abs(z + 1e-5) < 1e-12, f"{value}: the floor is at {z}")
+
+
+def clumps(runs):
+    """The group of a clump has the energy and the momentum of its body"""
+    shape = {"name": "hook", "material": "glass", "density": 2500,
+             "spheres": [{"radius": 2e-3}, {"r": [2.5e-3, 0, 0], "radius": 1e-3}, {"r": [0, 2e-3, 0], "radius": 1.2e-3}]}
+    particles = [{"clump": "hook", "r": [0.01, 0.01, 0.04], "omega": [0, 0, 100], "v": [0.1, 0, 0], "group": "one"}]
+    case = runs.case("clumps", **dict(RUN, end=0.01, gravity=[0, 0, 0], clumps=[shape], particles=particles, fill=[], insert=[], stages=[]))
+    runs.finish(case, "--output", "clumps")
+    for all_of, group in zip(table(runs, "clumps"), table(runs, "clumps", "groups.csv")):
+        for key in "kinetic_energy", "momentum_x", "momentum_y":
+            expect(abs(float(group[key]) - float(all_of[key])) <= 1e-6 * float(all_of["kinetic_energy"]),
+                   f"{key} at {group['t']}: {group[key]} and {all_of[key]}")
+
+
 def fields(runs):
     """The fields of the groups add up to those of all particles, up to the forces between groups, which cancel"""
     grid = {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08], "cells": [1, 1, 1], "width": 0.002, "edges": "closed",
@@ -208,6 +236,8 @@ def main():
         closed_forms(runs)
         timeouts(runs)
         errors(runs)
+        whole_entries(runs)
+        clumps(runs)
         fields(runs)
         one_result(runs)
     print("stages: closed forms, time-outs, errors, one result with interruptions; groups and their removal")

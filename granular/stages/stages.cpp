@@ -175,11 +175,8 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
     const World& w = *c.world;
     while (!is_over) {
         const StageSpec& s = what();
-        const long since = w.steps() - log.back().start;
         const bool rests = s.until && is_at_rest(w);
-        const bool is_late =
-            (s.duration && since >= steps_in(*s.duration)) || (s.end && w.steps() >= steps_in(*s.end));
-        if (!rests && !is_late) return;
+        if (!rests && !is_late(w)) return;
         if (!rests && s.until) report_condition(w, warn);
         const Part before = log.back();
         log.back().end = w.steps(), log.back().reason = rests ? condition : duration;
@@ -197,7 +194,16 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
     }
 }
 
-/// Warns that the condition of the present stage is not met, or throws StageFailed.
+/// Whether the present stage has reached its duration or its end
+bool Stages::is_late(const World& w) const
+{
+    const StageSpec& s = what();
+    return (s.duration && w.steps() - log.back().start >= steps_in(*s.duration)) ||
+           (s.end && w.steps() >= steps_in(*s.end));
+}
+
+/// Warns that the condition of the present stage is not met. Throws StageFailed if the stage has reached its
+/// duration or its end and has "on_timeout": "fail".
 void Stages::report_condition(const World& w, const std::function<void(const std::string&)>& warn) const
 {
     const StageSpec& s = what();
@@ -208,7 +214,7 @@ void Stages::report_condition(const World& w, const std::function<void(const std
         "%zu free particles and clumps, %.3g of the largest one in the stage",
         s.name.c_str(), w.t(), static_cast<double>(w.steps() - log.back().start) * h, energy, free_bodies(w),
         largest_energy > 0 ? energy / largest_energy : 1.);
-    if (s.fails) throw StageFailed("stage_timeout", message);
+    if (s.fails && is_late(w)) throw StageFailed("stage_timeout", message);
     warn(message);
 }
 

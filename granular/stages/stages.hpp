@@ -61,6 +61,7 @@ private:
 
     void begin(Case& c);
     bool is_at_rest(const World& w);
+    bool is_late(const World& w) const;
     void report_condition(const World& w, const std::function<void(const std::string&)>& warn) const;
     long steps_in(double time) const;
 

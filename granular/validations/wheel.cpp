@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Single wheel with prescribed slip on a bed of grains (Fang 2022, Sec. 7.2.6), in plane strain.
+/// Single wheel with prescribed slip on a bed of grains (Fang 2022, Sec. 7.2.6), in plane strain and as a
+/// mesh.
 ///
-/// The wheel is a cylinder, free in the vertical direction under its load. Its horizontal velocity v and its
-/// angular velocity ω are prescribed, with the slip s = 1 - v/(ω radius). The bed is periodic along the axis.
-/// All loads are those of the width of 16 cm.
+/// The wheel is a cylinder or a torus, free in the vertical direction under its load. Its horizontal velocity
+/// v and its angular velocity ω are prescribed, with the slip s = 1 - v/(ω radius). The bed is periodic along
+/// the axis. All loads are those of the width of 16 cm.
 ///
 ///     pull   = horizontal load of the grains on the wheel, positive in the direction of travel (DBP)
 ///     torque = driving torque of the axle
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace hilda::granular {
@@ -32,7 +34,7 @@ namespace hilda::granular {
 namespace {
 
 constexpr double g = 9.81, mu = 0.9, settling_mu_r = 0.2, gamma = 1e3;
-constexpr double radius = 0.13, omega = 17 * std::numbers::pi / 180, wheel_width = 0.16, wheel_load = 80;
+constexpr double omega = 17 * std::numbers::pi / 180, wheel_width = 0.16, wheel_load = 80;
 constexpr double start_x = 0.18, resting = 0.3;  // [m, s]
 constexpr double settled_energy = 1e-3;          ///< largest kinetic energy per grain [m g R]
 constexpr double longest_settling = 3;           // [s]
@@ -52,11 +54,35 @@ PairLaw law(const WheelBed& bed, double friction, double mu_r)
     return l;
 }
 
-/// The world of a bed and of its wheel, at rest above it
+/// Of the tyre it is the one at the outer equator [m].
+double radius_of(WheelShape shape) { return shape == WheelShape::tyre ? 0.305 : 0.13; }
+
+bool is_plane_strain(WheelShape shape) { return shape == WheelShape::cylinder || shape == WheelShape::prism; }
+
+/// The triangles of a wheel about the z axis
+TriangleMesh wheel_mesh(WheelShape shape, const WheelBed& bed)
+{
+    const double radius = radius_of(shape), half = wheel_width / 2;
+    if (shape == WheelShape::prism) {
+        const double beyond = bed.width / 2 + 2 * bed.R;
+        return lathe_mesh({{radius, beyond}, {radius, -beyond}}, 96);
+    }
+    if (shape == WheelShape::ends)
+        return lathe_mesh({{0, half}, {radius, half}, {radius, -half}, {0, -half}}, 96);
+    std::vector<std::array<double, 2>> profile;
+    constexpr int around = 24;
+    for (int k = 0; k < around; ++k) {
+        const double angle = -2 * std::numbers::pi * k / around;
+        profile.push_back({radius - half + half * std::cos(angle), half * std::sin(angle)});
+    }
+    profile.push_back(profile.front());
+    return lathe_mesh(profile, 96);
+}
+
+/// The world of a bed, without a wheel
 struct Soil {
     World world;
     WheelBed bed;
-    int wheel = 0;
 
     Soil(const WheelBed& bed, double friction, double mu_r, Device device)
         : world(options(bed, device), {rock()}), bed(bed)
@@ -66,16 +92,21 @@ struct Soil {
         world.add(b);  // floor
         b.axis = {1, 0, 0}, world.add(b);
         b.axis = {-1, 0, 0}, b.r = {bed.length, 0, 0}, world.add(b);
-        b.r = {start_x, bed.width / 2, 3 * bed.depth + radius};
-        if (bed.wheel > 0) {
-            // The axis of a lathe is z. It is turned to y by -90 degrees about x.
-            const double half = bed.wheel / 2, s = std::sqrt(0.5);
-            b.shape = Boundary::Shape::mesh, b.axis = {0, 0, 1}, b.p = {s, {-s, 0, 0}};
-            wheel = world.add(b, lathe_mesh({{0, half}, {radius, half}, {radius, -half}, {0, -half}}, 96));
-        } else {
-            b.shape = Boundary::Shape::cylinder, b.axis = {0, 1, 0}, b.radius = radius;
-            wheel = world.add(b);
+    }
+
+    /// Adds the wheel, at rest with its axis at the height z, and returns its number.
+    int add_wheel(WheelShape shape, double z, double mass)
+    {
+        Boundary b;
+        b.r = {start_x, bed.width / 2, z}, b.mass = mass, b.free = {false, false, true};
+        if (shape == WheelShape::cylinder) {
+            b.shape = Boundary::Shape::cylinder, b.axis = {0, 1, 0}, b.radius = radius_of(shape);
+            return world.add(b);
         }
+        // The axis of a lathe is z. It is turned to y by -90 degrees about x.
+        const double s = std::sqrt(0.5);
+        b.shape = Boundary::Shape::mesh, b.axis = {0, 0, 1}, b.p = {s, {-s, 0, 0}};
+        return world.add(b, wheel_mesh(shape, bed));
     }
 
     static WorldOptions options(const WheelBed& bed, Device device)
@@ -98,7 +129,7 @@ struct Soil {
                   rows = std::max(1, static_cast<int>(bed.width / (2.1 * R)));
         const auto count = static_cast<int>(
             std::lround(packing * bed.length * bed.width * bed.depth * rock().density / of_grain()));
-        Random random(1);
+        Random random(bed.seed);
         const auto in = [&](double most) { return random.number(-most, most); };
         for (int k = 0; k < count; ++k) {
             const int i = k % columns, j = k / columns % rows, layer = k / (columns * rows);
@@ -149,6 +180,7 @@ BedCase bed_case(const WheelBed& bed)
              {"mu", bed.settling_mu},
              {"mu_r", settling_mu_r},
              {"g", g},
+             {"seed", static_cast<double>(bed.seed)},
              {"settled energy", settled_energy}}};
 }
 
@@ -166,6 +198,16 @@ std::vector<Vec3> settled_soil(const WheelBed& bed, const ValidationOptions& opt
         },
         [&](io::Archive& a) { a.list(grains); });
     return grains;
+}
+
+void WheelRecord::append(const WheelRecord& other)
+{
+    const auto add = [&](std::vector<double> WheelRecord::*column) {
+        (this->*column).insert((this->*column).end(), (other.*column).begin(), (other.*column).end());
+    };
+    add(&WheelRecord::t), add(&WheelRecord::pull), add(&WheelRecord::load), add(&WheelRecord::torque),
+        add(&WheelRecord::sinkage);
+    power += other.power, dissipated += other.dissipated;
 }
 
 WheelRecord::Mean WheelRecord::mean(const std::vector<double>& column, double from) const
@@ -188,17 +230,16 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
         world.add(p);
     }
     const std::vector<Particle> before = world.particles();
-    const double scale = wheel_width / (bed.wheel > 0 ? bed.wheel : bed.width),
-                 v = omega * radius * (1 - test.slip);
+    const double radius = radius_of(test.shape), v = omega * radius * (1 - test.slip),
+                 scale = is_plane_strain(test.shape) ? wheel_width / bed.width : 1;
 
-    double lowest = 0;  // height of the axis where the wheel touches the first grain
+    double lowest = 0;  // height of the axis where a cylinder touches the first grain
     for (const Particle& p : before)
         if (const double dx = std::abs(p.r.x - start_x), reach = radius + bed.R; dx < reach)
             lowest = std::max(lowest, p.r.z + std::sqrt(reach * reach - dx * dx));
-    Boundary& b = world.boundary(now.wheel);
-    b.r.z = lowest, b.mass = wheel_load / scale / g, b.free = {false, false, true};
+    const int number = now.add_wheel(test.shape, lowest, wheel_load / scale / g);
     world.step(std::lround(resting / bed.h));
-    world.boundary(now.wheel).v.x = v, world.boundary(now.wheel).omega = {0, omega, 0};
+    world.boundary(number).v.x = v, world.boundary(number).omega = {0, omega, 0};
 
     WheelRecord out;
     constexpr long between = 20;  // steps between two evaluations of the loads
@@ -212,10 +253,10 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
         double pull = 0, load = 0, torque = 0, sinkage = 0;
         for (long i = 0; i < loads; ++i) {
             world.step(between);
-            const Wrench w = world.totals().on_boundary[static_cast<std::size_t>(now.wheel)];
+            const Wrench w = world.totals().on_boundary[static_cast<std::size_t>(number)];
             const double part = 1 / static_cast<double>(loads);
             pull += part * scale * w.F.x, load += part * scale * w.F.z, torque -= part * scale * w.T.y;
-            const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(now.wheel)];
+            const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(number)];
             if (i % 10 == 0)
                 sinkage += (surface(before, wheel.r.x, bed.R) - (wheel.r.z - radius)) /
                            std::ceil(static_cast<double>(loads) / 10);
@@ -225,30 +266,43 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
     }
     out.power = out.mean(out.torque, from).value * omega - out.mean(out.pull, from).value * v;
     out.dissipated = scale * (world.watch().dissipated - dissipated) / (test.duration - since);
-    const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(now.wheel)];
+    const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(number)];
     out.wheel_x = wheel.r.x, out.wheel_z = wheel.r.z;
     for (const Particle& p : world.particles()) out.grain.insert(out.grain.end(), {p.r.x, p.r.z, p.v.norm()});
-    options.include(io::formatted("slip %g, mu_r = %g", test.slip, test.mu_r), world);
+    options.include(io::formatted("%s, slip %g, mu_r = %g", wheel_shape_names[static_cast<int>(test.shape)],
+                                  test.slip, test.mu_r),
+                    world);
     return out;
 }
 
 namespace {
 
-/// By slip; then some without rolling friction
-std::vector<WheelTest> tests(bool full)
+/// A test, and the number of beds on which it is made; their seeds follow each other.
+struct TestOnBeds {
+    WheelTest test;
+    int beds;
+};
+
+/// The cylinder by slip, some of them without rolling friction; then the meshes
+std::vector<TestOnBeds> tests(bool full)
 {
     WheelTest test;
     if (full) test.bed.width = 0.12;
-    std::vector<WheelTest> all;
-    const auto add = [&](double mu_r, const std::vector<double>& slips) {
-        for (const double slip : slips) all.push_back(test), all.back().slip = slip, all.back().mu_r = mu_r;
+    int beds = full ? 4 : 1;
+    std::vector<TestOnBeds> all;
+    const auto add = [&](const std::vector<double>& slips) {
+        for (const double slip : slips) all.push_back({test, beds}), all.back().test.slip = slip;
     };
+    add(full ? std::vector{-0.7, -0.5, -0.3, -0.1, 0., 0.1, 0.3, 0.5, 0.7} : std::vector{-0.3, 0., 0.3, 0.7});
+    beds = 1, test.mu_r = 0;
+    add(full ? std::vector{-0.3, 0., 0.3, 0.7} : std::vector{0.3});
+    test.mu_r = WheelTest{}.mu_r, test.shape = WheelShape::prism;
+    add({0.3});
     if (full) {
-        add(0.2, {-0.7, -0.5, -0.3, -0.1, 0, 0.1, 0.3, 0.5, 0.7});
-        add(0, {-0.3, 0, 0.3, 0.7});
-    } else {
-        add(0.2, {-0.3, 0, 0.3, 0.7});
-        add(0, {0.3});
+        test.shape = WheelShape::ends, test.bed.width = 0.32;
+        add({-0.3, 0, 0.3, 0.7});
+        test.shape = WheelShape::tyre, test.bed.length = 1.05;
+        add({-0.3, 0, 0.3, 0.7});
     }
     return all;
 }
@@ -258,92 +312,137 @@ struct Measured {
     double pull = 0, load = 0, torque = 0, sinkage = 0, power = 0, dissipated = 0;
 };
 
-std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
-{
-    constexpr double none = 1e3, infinite = 1e300;
-    double pull = infinite, torque = infinite, zero = std::nan(""), power = infinite, dissipated = infinite;
-    double load = 0;
-    Measured least, last;  // of the sinkage; of the slip
-    least.sinkage = infinite;
-    std::vector<ValidationCheck> out;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        const Measured& m = all[k];
-        load = max_or_nan(load, std::abs(m.load / wheel_load - 1));
-        power = std::min(power, m.power), dissipated = std::min(dissipated, m.dissipated);
-        if (m.test.mu_r == 0) {
-            for (const Measured& rough : all)
-                if (rough.test.mu_r > 0 && rough.test.slip == m.test.slip && m.test.slip == 0.3) {
-                    out.push_back({"sinkage without rolling friction over that with, slip 0.3",
-                                   m.sinkage / rough.sinkage, 1, none});
-                    out.push_back({"pull without rolling friction minus that with, slip 0.3 [N]",
-                                   m.pull - rough.pull, -none, 0});
-                }
-            continue;
-        }
-        if (m.sinkage < least.sinkage) least = m;
-        if (k > 0) {
+/// The smallest differences from a slip to the next one, for one shape
+struct Increases {
+    double pull = infinite, torque = infinite;
+    double zero = std::nan("");  ///< slip at which the pull changes its sign
+    Measured least_sunk, last;
+
+    explicit Increases(const std::vector<Measured>& of)
+    {
+        least_sunk = last = of.front();
+        for (std::size_t k = 1; k < of.size(); last = of[k], ++k) {
+            const Measured& m = of[k];
+            if (m.sinkage < least_sunk.sinkage) least_sunk = m;
             pull = std::min(pull, m.pull - last.pull), torque = std::min(torque, m.torque - last.torque);
             if (last.pull < 0 && m.pull >= 0)
                 zero = last.test.slip - last.pull * (m.test.slip - last.test.slip) / (m.pull - last.pull);
         }
-        last = m;
     }
-    out.insert(out.begin(), {{"least increase of the pull to the next slip [N]", pull, 0, none},
-                             {"slip at which the pull changes its sign", zero, -0.1, 0.3},
-                             {"least increase of the torque to the next slip [N m]", torque, 0, none},
-                             {"slip of the least sinkage", least.test.slip, -0.3, 0.3},
-                             {"sinkage at slip 0.7 over the least", last.sinkage / least.sinkage, 1, none},
-                             {"vertical load over the weight of the wheel - 1, largest", load, 0, 0.02},
-                             {"least torque omega - pull v [W]", power, 0, none},
-                             {"least dissipation of the contacts [W]", dissipated, 0, none}});
+    static constexpr double infinite = 1e300;
+};
+
+std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
+{
+    constexpr double none = 1e3, infinite = 1e300;
+    const auto of = [&](WheelShape shape, bool rolls = true) {
+        std::vector<Measured> some;
+        for (const Measured& m : all)
+            if (m.test.shape == shape && (m.test.mu_r == 0) != rolls) some.push_back(m);
+        return some;
+    };
+    const auto at = [](const std::vector<Measured>& some, double slip) {
+        return *std::find_if(some.begin(), some.end(),
+                             [&](const Measured& m) { return m.test.slip == slip; });
+    };
+    const std::vector<Measured> cylinder = of(WheelShape::cylinder);
+    const Increases by_slip(cylinder);
+    double load = 0, power = infinite, dissipated = infinite;
+    for (const Measured& m : all) {
+        load = max_or_nan(load, std::abs(m.load / wheel_load - 1));
+        power = std::min(power, m.power), dissipated = std::min(dissipated, m.dissipated);
+    }
+    const Measured rolling = at(cylinder, 0.3), sliding = at(of(WheelShape::cylinder, false), 0.3),
+                   prism = at(of(WheelShape::prism), 0.3);
+    std::vector<ValidationCheck> out = {
+        {"least increase of the pull to the next slip [N]", by_slip.pull, 0, none},
+        {"slip at which the pull changes its sign", by_slip.zero, -0.1, 0.3},
+        {"least increase of the torque to the next slip [N m]", by_slip.torque, 0, none},
+        {"slip of the least sinkage", by_slip.least_sunk.test.slip, -0.3, 0.3},
+        {"sinkage at slip 0.7 over the least", by_slip.last.sinkage / by_slip.least_sunk.sinkage, 1, none},
+        {"vertical load over the weight of the wheel - 1, largest", load, 0, 0.02},
+        {"least torque omega - pull v [W]", power, 0, none},
+        {"least dissipation of the contacts [W]", dissipated, 0, none},
+        {"sinkage without rolling friction over that with, slip 0.3", sliding.sinkage / rolling.sinkage, 1,
+         none},
+        {"pull without rolling friction minus that with, slip 0.3 [N]", sliding.pull - rolling.pull, -none,
+         0},
+        {"torque of the mesh over that of the cylinder - 1, plane strain, slip 0.3",
+         prism.torque / rolling.torque - 1, -0.1, 0.1}};
+    for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre})
+        if (const std::vector<Measured> mesh = of(shape); !mesh.empty()) {
+            const Increases increases(mesh);
+            const std::string name = wheel_shape_names[static_cast<int>(shape)];
+            out.push_back(
+                {name + ": least increase of the pull to the next slip [N]", increases.pull, 0, none});
+            out.push_back(
+                {name + ": least increase of the torque to the next slip [N m]", increases.torque, 0, none});
+            if (shape == WheelShape::tyre)
+                out.push_back(
+                    {name + ": slip at which the pull changes its sign", increases.zero, -0.1, 0.3});
+        }
     return out;
 }
 
 ValidationResult run(const ValidationOptions& options)
 {
-    const std::vector<WheelTest> all = tests(options.full);
-    if (options.full) options.announce("13 wheel tests, about 5 minutes of CPU time in the preset native");
-    const double parts = static_cast<double>(all.size()) + 1;
-    double done = 0;
-    std::vector<Vec3> soil;
-    options.kept.part(
-        [&] {
-            soil = settled_soil(all.front().bed, options,
-                                [&](double share) { options.progress(share / parts); });
-        },
-        [&](io::Archive& a) { a.list(soil); });
-    options.progress((done = 1) / parts);
+    const std::vector<TestOnBeds> all = tests(options.full);
+    double parts = 0, done = 0;
+    for (const TestOnBeds& t : all) parts += t.beds;
+    if (options.full)
+        options.announce(
+            io::formatted("%.0f wheel tests, about 20 minutes of CPU time in the preset native", parts));
 
     ValidationTable table{"study",
-                          {"slip", "mu_r", "pull", "pull_deviation", "torque", "torque_deviation", "sinkage",
-                           "sinkage_deviation", "load", "power", "dissipated"},
+                          {"wheel", "slip", "mu_r", "beds", "pull", "pull_deviation", "torque",
+                           "torque_deviation", "sinkage", "sinkage_deviation", "load", "power", "dissipated"},
                           {}},
-        motion{"motion", {"slip", "mu_r", "t", "pull", "load", "torque", "sinkage"}, {}},
-        grains{"grains", {"slip", "mu_r", "x", "z", "speed", "wheel_x", "wheel_z"}, {}};
+        motion{"motion", {"wheel", "slip", "mu_r", "t", "pull", "load", "torque", "sinkage"}, {}},
+        grains{"grains", {"wheel", "slip", "mu_r", "x", "z", "speed", "wheel_x", "wheel_z"}, {}};
     std::vector<Measured> measured;
-    for (const WheelTest& test : all) {
-        WheelRecord r;
-        options.kept.part([&] { r = drive(test, soil, options); },
-                          [&](io::Archive& a) {
-                              for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage, &r.grain})
-                                  a.list(*column);
-                              a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x), a.value(r.wheel_z);
-                          });
-        options.progress(++done / parts);
-        const double from = (1 - test.averaged) * test.duration;
-        const WheelRecord::Mean pull = r.mean(r.pull, from), torque = r.mean(r.torque, from),
-                                sinkage = r.mean(r.sinkage, from), load = r.mean(r.load, from);
-        table.rows.push_back({test.slip, test.mu_r, pull.value, pull.deviation, torque.value,
-                              torque.deviation, sinkage.value, sinkage.deviation, load.value, r.power,
-                              r.dissipated});
-        for (std::size_t k = 0; k < r.t.size(); ++k)
-            motion.rows.push_back(
-                {test.slip, test.mu_r, r.t[k], r.pull[k], r.load[k], r.torque[k], r.sinkage[k]});
-        for (std::size_t k = 0; k + 2 < r.grain.size(); k += 3)
-            grains.rows.push_back(
-                {test.slip, test.mu_r, r.grain[k], r.grain[k + 1], r.grain[k + 2], r.wheel_x, r.wheel_z});
-        measured.push_back(
-            {test, pull.value, load.value, torque.value, sinkage.value, r.power, r.dissipated});
+    std::map<std::string, std::vector<Vec3>> soils;  // by the hash of their case
+    for (const auto& [first, beds] : all) {
+        WheelTest test = first;
+        const char* wheel = wheel_shape_names[static_cast<int>(test.shape)];
+        WheelRecord pooled;  // the records of all beds, one after the other
+        for (int n = 0; n < beds; ++n, ++test.bed.seed) {
+            const auto [soil, is_new] = soils.try_emplace(bed_case(test.bed).hash());
+            if (is_new)
+                options.kept.part(
+                    [&, &to = soil->second] {
+                        to = settled_soil(test.bed, options, [&](double share) {
+                            options.progress((done + share / 2) / parts);
+                        });
+                    },
+                    [&, &to = soil->second](io::Archive& a) { a.list(to); });
+            WheelRecord r;
+            options.kept.part(
+                [&, &from = soil->second] { r = drive(test, from, options); },
+                [&](io::Archive& a) {
+                    for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage, &r.grain})
+                        a.list(*column);
+                    a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x), a.value(r.wheel_z);
+                });
+            options.progress(++done / parts);
+            pooled.append(r);
+            if (n > 0) continue;
+            for (std::size_t k = 0; k < r.t.size(); ++k)
+                motion.rows.push_back(
+                    {wheel, test.slip, test.mu_r, r.t[k], r.pull[k], r.load[k], r.torque[k], r.sinkage[k]});
+            for (std::size_t k = 0; k + 2 < r.grain.size(); k += 3)
+                grains.rows.push_back({wheel, test.slip, test.mu_r, r.grain[k], r.grain[k + 1],
+                                       r.grain[k + 2], r.wheel_x, r.wheel_z});
+        }
+        const double from = (1 - test.averaged) * test.duration, count = beds;
+        const WheelRecord::Mean pull = pooled.mean(pooled.pull, from),
+                                torque = pooled.mean(pooled.torque, from),
+                                sinkage = pooled.mean(pooled.sinkage, from),
+                                load = pooled.mean(pooled.load, from);
+        const double power = pooled.power / count, dissipated = pooled.dissipated / count;
+        table.rows.push_back({wheel, test.slip, test.mu_r, count, pull.value, pull.deviation, torque.value,
+                              torque.deviation, sinkage.value, sinkage.deviation, load.value, power,
+                              dissipated});
+        measured.push_back({first, pull.value, load.value, torque.value, sinkage.value, power, dissipated});
     }
     return {{table, motion, grains}, checks(measured)};
 }

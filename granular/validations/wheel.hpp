@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Wheel with prescribed slip on a bed of grains, in plane strain; see wheel.cpp.
+/// Wheel with prescribed slip on a bed of grains, in plane strain and as a mesh; see wheel.cpp.
 
 #pragma once
 
 #include "granular/validations/validation.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace hilda::granular {
 
-/// A bed that is periodic along the axis of the wheel, and the width of the wheel
+/// The shapes of a wheel. All but the cylinder are meshes.
+enum class WheelShape {
+    cylinder,  ///< plane strain
+    prism,     ///< plane strain: the cylinder as a prism of triangles across the period
+    ends,      ///< cylinder of the width of 16 cm, with end faces
+    tyre       ///< torus of the width of 16 cm
+};
+inline constexpr const char* wheel_shape_names[] = {"cylinder", "prism", "cylinder with ends", "tyre"};
+
+/// A bed that is periodic along the axis of the wheel
 struct WheelBed {
-    double wheel = 0;          ///< of a wheel with end faces, a mesh [m]; 0: plane strain
     double length = 0.7;       ///< along x, between end walls [m]
     double width = 0.06;       ///< period along y [m]
     double depth = 0.10;       ///< approximate [m]
@@ -21,6 +30,7 @@ struct WheelBed {
     double k = 1e6;            ///< normal and tangential stiffness at an overlap of R [N/m]
     double settling_mu = 0.1;  ///< coefficient of friction during the settling; it determines the packing
     double h = 5e-5;           ///< step [s]
+    std::uint64_t seed = 1;    ///< of the random displacements from which it settles
 };
 
 /// What determines the settled bed
@@ -34,6 +44,7 @@ std::vector<Vec3> settled_soil(
 
 struct WheelTest {
     WheelBed bed = {};
+    WheelShape shape = WheelShape::cylinder;
     double mu_r = 0.2;       ///< coefficient of rolling friction
     double slip = 0;         ///< 1 - v/(ω radius)
     double duration = 5;     ///< of the motion [s]
@@ -56,6 +67,8 @@ struct WheelRecord {
         double value = 0, deviation = 0;
     };
     Mean mean(const std::vector<double>& column, double from) const;
+    /// Appends the columns of the loads and the sinkage of a test on another bed, and adds the powers.
+    void append(const WheelRecord& other);
 };
 
 /// The test on a settled bed with the same parameters.

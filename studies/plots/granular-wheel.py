@@ -8,31 +8,33 @@ from matplotlib.collections import PatchCollection
 
 from drawing import COLOURS, directory, distinct, grid, number, numbers, plt, read, save, where
 
-RADIUS, SPEED = 130, 0.297 * 0.13  # of the wheel [mm], at its rim [m/s]
+OMEGA = 0.2967  # [rad/s]
+RADIUS = {"cylinder": 130, "prism": 130, "cylinder with ends": 130, "tyre": 305}  # [mm]
 QUANTITIES = [("pull", 1, "drawbar pull [N]"), ("torque", 1, "driving torque [N m]"), ("sinkage", 1000, "sinkage [mm]")]
 
 
 def over_slip(axes, rows, column, factor, label):
-    for k, mu_r in enumerate(distinct(rows, "mu_r")):
-        mine = sorted(where(rows, mu_r=mu_r), key=lambda row: number(row["slip"]))
+    lines = [(wheel, mu_r) for wheel in distinct(rows, "wheel") for mu_r in distinct(where(rows, wheel=wheel), "mu_r")]
+    for k, (wheel, mu_r) in enumerate(lines):
+        mine = sorted(where(rows, wheel=wheel, mu_r=mu_r), key=lambda row: number(row["slip"]))
         axes.errorbar(numbers(mine, "slip"), [factor * x for x in numbers(mine, column)],
-                      yerr=[factor * x for x in numbers(mine, column + "_deviation")], fmt="os"[k % 2] + ("-" if k == 0 else "--"),
-                      color=COLOURS[k], ms=5, lw=1.3, capsize=2, elinewidth=0.7, label=rf"$\mu_r$ = {number(mu_r):g}")
+                      yerr=[factor * x for x in numbers(mine, column + "_deviation")], fmt="osD^v"[k] + ("--" if k == 1 else "-"),
+                      color=COLOURS[k], ms=5, lw=1.3, capsize=2, elinewidth=0.7, label=rf"{wheel}, $\mu_r$ = {number(mu_r):g}")
     axes.axhline(0, color="0.6", lw=0.8)
     axes.set(xlabel="slip", ylabel=label)
 
 
 def picture(axes, row, grains):
     """The grains at the end, coloured by their speed over that of the rim, with the wheel"""
-    radius = 7.5  # of the grains [mm]
+    radius, wheel = 7.5, RADIUS[row["wheel"]]  # of the grains [mm]
     places = sorted(grains, key=lambda p: number(p["speed"]))
     drawn = PatchCollection([plt.Circle((1000 * number(p["x"]), 1000 * number(p["z"])), radius) for p in places],
                             cmap="viridis", linewidths=0.2, edgecolors="0.3")
-    drawn.set_array([number(p["speed"]) / SPEED for p in places])
+    drawn.set_array([number(p["speed"]) / (OMEGA * wheel / 1000) for p in places])
     drawn.set_clim(0, 1)
     axes.add_collection(drawn)
     centre = (1000 * number(grains[0]["wheel_x"]), 1000 * number(grains[0]["wheel_z"]))
-    axes.add_patch(plt.Circle(centre, RADIUS, fill=False, color="k", lw=1.5))
+    axes.add_patch(plt.Circle(centre, wheel, fill=False, color="k", lw=1.5))
     axes.annotate("", xy=(centre[0] + 70, centre[1]), xytext=centre, arrowprops={"arrowstyle": "->", "color": "k"})
     axes.set(xlim=(0, 700), ylim=(0, 280), aspect="equal", xlabel="x [mm]", title=f"slip {number(row['slip']):g}")
     return drawn
@@ -43,17 +45,17 @@ def draw(folder):
     figure, panels = plt.subplots(3, 3, figsize=(13, 10.5), height_ratios=[1.25, 1, 0.8])
     for axes, (column, factor, label) in zip(panels[0], QUANTITIES):
         over_slip(axes, rows, column, factor, label)
-    rough = sorted(where(rows, mu_r=rows[0]["mu_r"]), key=lambda row: number(row["slip"]))
+    rough = sorted(where(rows, wheel=rows[0]["wheel"], mu_r=rows[0]["mu_r"]), key=lambda row: number(row["slip"]))
     chosen = [row for row in rough if number(row["slip"]) in (-0.3, 0, 0.3, 0.7)]
     for axes, (column, factor, label) in zip(panels[1], QUANTITIES):
         for k, row in enumerate(chosen):
-            mine = where(motion, slip=row["slip"], mu_r=row["mu_r"])
+            mine = where(motion, wheel=row["wheel"], slip=row["slip"], mu_r=row["mu_r"])
             axes.plot(numbers(mine, "t"), [factor * x for x in numbers(mine, column)], "-", color=COLOURS[k], lw=1,
                       label=f"slip {number(row['slip']):g}")
         axes.axvline(max(numbers(motion, "t")) / 2, color="0.6", lw=0.8, ls=":")
         axes.set(xlabel="time [s]", ylabel=label)
     for axes, row in zip(panels[2], [row for row in chosen if number(row["slip"]) != 0]):
-        drawn = picture(axes, row, where(grains, slip=row["slip"], mu_r=row["mu_r"]))
+        drawn = picture(axes, row, where(grains, wheel=row["wheel"], slip=row["slip"], mu_r=row["mu_r"]))
     panels[2][0].set_ylabel("z [mm]")
     bar = figure.colorbar(drawn, cax=panels[2][2].inset_axes([1.03, 0, 0.04, 1]))
     bar.set_label(r"speed over $\omega$ radius")

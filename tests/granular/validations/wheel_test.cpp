@@ -38,11 +38,22 @@ TEST_CASE("the bed carries the weight of a wheel, and a larger slip gives more p
     CHECK(driven.wheel_x == Approx(0.18 + 0.3 * rim * 1.5).epsilon(1e-6));
     CHECK(drive(test, soil, {}).pull == driven.pull);
 
-    // A wheel with end faces, a mesh
-    test.bed.wheel = 0.04, test.duration = 1;
-    const WheelRecord narrow = drive(test, soil, {});
-    CHECK(narrow.mean(narrow.load, 0.5).value == Approx(80).epsilon(0.05));
-    CHECK(narrow.mean(narrow.torque, 0.5).value > 0);
+    // A prism of many triangles is the cylinder, but for the scatter of a small bed.
+    test.shape = WheelShape::prism;
+    const WheelRecord prism = drive(test, soil, {});
+    CHECK(prism.mean(prism.torque, from).value ==
+          Approx(driven.mean(driven.torque, from).value).epsilon(0.3));
+    CHECK(prism.mean(prism.load, from).value == Approx(80).epsilon(0.05));
+    // Wheels that are narrower than the period
+    test.bed.width = 0.2, test.duration = 1;
+    const std::vector<Vec3> wide = settled_soil(test.bed, {});
+    for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre}) {
+        test.shape = shape;
+        const WheelRecord narrow = drive(test, wide, {});
+        CHECK(narrow.mean(narrow.load, 0.5).value == Approx(80).epsilon(0.05));
+        CHECK(narrow.mean(narrow.torque, 0.5).value > 0);
+    }
+    test.bed.width = 0.07;
 
     WheelBed other = bed;
     other.settling_mu = 0.5;

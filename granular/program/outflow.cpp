@@ -37,8 +37,7 @@ private:
     void append(std::string& text, const World& w) override
     {
         for (const RemovedParticle& p : w.removed()) {
-            const char* side =
-                p.side == RemovedParticle::none ? "removed" : ObjectReader::side_names[p.side];
+            const char* side = p.side == RemovedParticle::none ? "removed" : ObjectReader::side_names[p.side];
             text += io::formatted("%.12g,%u,%s", p.t, p.id, side);
             for (const Vec3& a : {p.r, p.v, p.omega}) text += io::formatted(",%.9g,%.9g,%.9g", a.x, a.y, a.z);
             text += io::formatted(",%.9g,%.9g\n", p.radius, p.mass);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finite boundaries, parts of bodies and densities in a case file.
 #include "granular/case/case_file.hpp"
-#include "granular/mesh/solid_body.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
+#include "granular/mesh/solid_body.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>

@@ -174,8 +174,8 @@ HILDA_HD inline double distance_in_face(const MeshView& mesh, std::uint32_t t, c
     const MeshTriangle& T = mesh.triangle[t];
     const double height = T.face.height(p);
     double least = (T.flags & MeshTriangle::two_sided) != 0 && height < 0 ? -height : height;
-    for (int k = 0; k < 3; ++k) {
-        const double inside = -T.edge[k].height(p);
+    for (const MeshPlane& edge : T.edge) {
+        const double inside = -edge.height(p);
         if (inside < least) least = inside;
     }
     if (!(least > 0)) return least;

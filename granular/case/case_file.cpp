@@ -254,8 +254,10 @@ private:
     void check_groups() const
     {
         for (std::size_t k = 0; k < out.stage_specs.size(); ++k)
-            for (const std::string& name : out.stage_specs[k].remove)
-                check_group("/stages/" + std::to_string(k) + "/remove", name);
+            for (std::size_t m = 0; m < out.stage_specs[k].remove.size(); ++m)
+                if (const Selection& s = out.stage_specs[k].remove[m];
+                    !s.group.empty() || s.region.shape == CutRegion::Shape::everywhere)
+                    check_group("/stages/" + std::to_string(k) + "/remove/" + std::to_string(m), s.group);
     }
 
     void add_material(ObjectReader& o)

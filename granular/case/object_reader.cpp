@@ -118,10 +118,13 @@ std::string ObjectReader::file(std::string_view key)
 std::vector<ObjectReader> ObjectReader::objects(std::string_view key)
 {
     std::vector<ObjectReader> all;
-    const io::Json::List& elements = list(key, false);
-    for (std::size_t k = 0; k < elements.size(); ++k)
-        all.emplace_back(source, elements[k], io::pointer_to(pointer(key), std::to_string(k)));
+    for (std::size_t k = 0; k < list(key, false).size(); ++k) all.push_back(object(key, k));
     return all;
+}
+
+ObjectReader ObjectReader::object(std::string_view key, std::size_t element)
+{
+    return {source, list(key, true)[element], io::pointer_to(pointer(key), std::to_string(element))};
 }
 
 }  // namespace hilda::granular

@@ -34,6 +34,8 @@ public:
     /// Readers of the elements of a list. Empty if the key is missing.
     std::vector<ObjectReader> objects(std::string_view key);
     ObjectReader object(std::string_view key) { return io::ObjectReader::object(key); }
+    /// A reader of one element of a list
+    ObjectReader object(std::string_view key, std::size_t element);
 };
 
 }  // namespace hilda::granular

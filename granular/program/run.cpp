@@ -254,7 +254,7 @@ private:
     /// Records the initial state, in the first stage.
     void begin_run()
     {
-        if (c.stages != nullptr) c.stages->begin_run(c);
+        if (c.stages != nullptr) c.stages->begin_run(c, [&](const std::string& text) { warn(text); });
         record();
     }
     /// Before a step: begins the next stage if the present one is over. Returns whether all are.

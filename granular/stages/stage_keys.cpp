@@ -19,14 +19,19 @@ RestCondition read_condition(ObjectReader o, double h)
     return c;
 }
 
-std::vector<std::string> read_names(ObjectReader& o, const char* key)
+/// The elements of `remove`: names of groups and regions
+std::vector<Selection> read_selections(ObjectReader& o)
 {
-    std::vector<std::string> all;
-    for (const io::Json& name : o.list(key, false)) {
-        if (name.string() == nullptr)
-            o.fail(key, all.size(),
-                   std::string(key) + " must list names of groups, got " + io::described(name));
-        all.push_back(*name.string());
+    std::vector<Selection> all;
+    const io::Json::List& elements = o.list("remove", false);
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+        if (elements[k].string() != nullptr)
+            all.push_back({*elements[k].string(), {}});
+        else if (elements[k].members() != nullptr)
+            all.push_back(read_selection(o.object("remove", k)));
+        else
+            o.fail("remove", k,
+                   "remove must list names of groups and regions, got " + io::described(elements[k]));
     }
     return all;
 }
@@ -50,7 +55,7 @@ StageSpec read_stage(ObjectReader& o, double h)
             o.fail("set", "set must be an object of JSON pointers and values, got " + io::described(*set));
         for (const io::Json::Member& m : *set->members()) s.set.emplace_back(m.key, m.value);
     }
-    s.remove = read_names(o, "remove");
+    s.remove = read_selections(o);
     o.finish();
     return s;
 }

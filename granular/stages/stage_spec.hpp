@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
+#include "granular/stages/selection.hpp"
 
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ struct StageSpec {
     std::optional<RestCondition> until;                 ///< ends the stage earlier
     bool fails = false;                                 ///< the run fails if the condition is not met in time
     std::vector<std::pair<std::string, io::Json>> set;  ///< pointers and new values
-    std::vector<std::string> remove;                    ///< groups that are removed
+    std::vector<Selection> remove;                      ///< particles that are removed at the start
 };
 
 /// Reads an entry of `stages` of a case with a step h [s]. Throws io::PlacedError.

@@ -123,7 +123,11 @@ std::vector<int> Stages::moving() const
 
 long Stages::steps_in(double time) const { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
-void Stages::begin_run(Case& c) { begin(c); }
+void Stages::begin_run(Case& c, const std::function<void(const std::string&)>& warn)
+{
+    begin(c);
+    report_removal(*c.world, warn);
+}
 
 /// Begins the next stage at the present instant.
 void Stages::begin(Case& c)
@@ -135,17 +139,18 @@ void Stages::begin(Case& c)
         take_over(c, *parameters[k].c, parameters[k].pointers, c.world->t());
         begin_change(c, *parameters[k].c, parameters[k].pointers);
     }
-    if (!spec[k].remove.empty()) {
-        std::vector<std::uint32_t> ids;
-        c.world->each_particle([&](const Particle& p) {
-            const int group = c.groups->of(p.id);
-            if (group != Groups::none &&
-                std::find(spec[k].remove.begin(), spec[k].remove.end(),
-                          c.groups->names[static_cast<std::size_t>(group)]) != spec[k].remove.end())
-                ids.push_back(p.id);
-        });
-        c.world->remove(ids);
-    }
+    if (spec[k].remove.empty()) return;
+    const auto before = static_cast<std::int64_t>(c.world->count());
+    c.world->remove(selected(*c.world, *c.groups, spec[k].remove));
+    log.back().removed = before - static_cast<std::int64_t>(c.world->count());
+}
+
+/// Warns if the present stage, which has just begun, removes particles and has found none.
+void Stages::report_removal(const World& w, const std::function<void(const std::string&)>& warn) const
+{
+    if (!what().remove.empty() && log.back().removed == 0)
+        warn(io::formatted("stage '%s': remove: no particle is in its groups and regions at t = %.9g s",
+                           what().name.c_str(), w.t()));
 }
 
 void Stages::resume(Case& c) const
@@ -191,6 +196,7 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
             log.back() = before;
             throw StageFailed("stage_motion", e.what());
         }
+        report_removal(w, warn);
     }
 }
 
@@ -231,7 +237,8 @@ void Stages::transfer(io::Archive& a)
     a.check_each(
         log, "invalid stage",
         [](const Part& p) {
-            return p.start >= 0 && p.end >= 0 && p.reason >= running && p.reason <= duration;
+            return p.start >= 0 && p.end >= 0 && p.removed >= 0 && p.reason >= running &&
+                   p.reason <= duration;
         },
         [](const Part& p) { return std::to_string(p.start) + " to " + std::to_string(p.end); });
     a.value(largest_energy);
@@ -250,11 +257,14 @@ io::Json Stages::summary(double t) const
     };
     constexpr const char* reasons[] = {"end of the run", "condition", "duration"};
     io::Json all = io::Json::array();
-    for (std::size_t k = 0; k < log.size(); ++k)
-        all.push_back({{"name", spec[k].name},
-                       {"start", rounded(static_cast<double>(log[k].start) * h)},
-                       {"end", rounded(log[k].reason == running ? t : static_cast<double>(log[k].end) * h)},
-                       {"reason", reasons[log[k].reason]}});
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        io::Json part{{"name", spec[k].name},
+                      {"start", rounded(static_cast<double>(log[k].start) * h)},
+                      {"end", rounded(log[k].reason == running ? t : static_cast<double>(log[k].end) * h)},
+                      {"reason", reasons[log[k].reason]}};
+        if (!spec[k].remove.empty()) part["removed"] = log[k].removed;
+        all.push_back(std::move(part));
+    }
     return all;
 }
 

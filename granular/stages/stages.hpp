@@ -22,10 +22,11 @@ public:
     /// Reads the parameters of all stages of a case. Throws io::PlacedError with the place of the stage.
     Stages(const Case& c, const Environment& environment);
 
-    /// Begins the first stage, at the initial state.
-    void begin_run(Case& c);
+    /// Begins the first stage, at the initial state. `warn` receives a message if it removes no particle.
+    void begin_run(Case& c, const std::function<void(const std::string&)>& warn);
     /// Ends the present stage before a step if it is over, and begins the next one. `warn` receives the
-    /// message of a condition that is not met in time. Throws StageFailed.
+    /// messages of a condition that is not met in time, and of a `remove` that no particle meets. Throws
+    /// StageFailed.
     void update(Case& c, const std::function<void(const std::string&)>& warn);
     /// After the last step of the run: as update() if the present stage has a condition that is not met.
     void end_run(const World& w, const std::function<void(const std::string&)>& warn);
@@ -53,6 +54,7 @@ private:
     struct Part {
         std::int64_t start = 0, end = 0;  ///< [steps]
         std::int64_t reason = running;
+        std::int64_t removed = 0;  ///< particles, at the start
     };
     struct Parameters {
         std::vector<std::string> pointers;
@@ -60,6 +62,7 @@ private:
     };
 
     void begin(Case& c);
+    void report_removal(const World& w, const std::function<void(const std::string&)>& warn) const;
     bool is_at_rest(const World& w);
     bool is_late(const World& w) const;
     void report_condition(const World& w, const std::function<void(const std::string&)>& warn) const;

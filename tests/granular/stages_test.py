@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stages of a run of hilda-granular: their ends, their changes against closed forms, one result with interruptions, and errors.
-Groups of particles: their table, columns, fields and removal.
+Groups of particles: their table, columns, fields and removal; removal of regions.
 
     stages_test.py PROGRAM
 """
@@ -175,7 +175,18 @@ def errors(runs):
                            ({"/end": 3}, "/end cannot be set by a stage"),
                            ({"/laws/0/nu": 3}, "/laws/0/nu: unknown key .nu.")):
         refused("/stages/1/set", message, one, {"name": "two", "set": value})
-    refused("/stages/1/remove", "no entry has the group 'lidd'; did you mean 'lid'\\?", one, {"name": "two", "remove": ["lidd"]})
+    plane = {"type": "half_space", "r": [0, 0, 0], "normal": [0, 0, 1]}
+    for removal, place, message in (
+            ("lidd", "", "no entry has the group 'lidd'; did you mean 'lid'\\?"),
+            ("", "", "no entry has the group ''"),
+            (3, "", "remove must list names of groups and regions, got 3"),
+            (dict(plane, group="bedd"), "", "no entry has the group 'bedd'; did you mean 'bed'\\?"),
+            (dict(plane, type="halfspace"), "/type", "unknown type \"halfspace\"; did you mean 'half_space'\\?"),
+            (dict(plane, normal=[0, 0, 0]), "/normal", "normal must"),
+            (dict(plane, radius=1), "/radius", "unknown key \"radius\"; allowed: type, r, normal, group, note"),
+            ({"type": "box", "low": [0, 0, 1], "high": [1, 1, 1]}, "/high/2", "high must be above low, 1, got 1"),
+            ({"type": "cylinder", "r": [0, 0, 0], "axis": [0, 0, 1], "radius": 0, "length": 1}, "/radius", "radius must be positive, got 0")):
+        refused(f"/stages/1/remove/0{place}", message, one, {"name": "two", "remove": [removal]})
     refused("/stages/1/name", 'two stages have the same name, got "one"', one, one)
     refused("/stages/0/end", "end must not be given together with duration", dict(one, duration=1, end=1))
     refused("/stages/0/on_timeout", "on_timeout is only for a stage with until and a duration or end", dict(one, on_timeout="fail"))
@@ -210,6 +221,73 @@ def clumps(runs):
                    f"{key} at {group['t']}: {group[key]} and {all_of[key]}")
 
 
+def cuts(runs):
+    """A stage removes the particles whose centres are in a region, and clumps by their centres of mass"""
+    # two equal spheres: the centre of mass is between them
+    pair = {"name": "pair", "material": "glass", "density": 2500, "spheres": [{"radius": 1e-3}, {"r": [2.1e-3, 0, 0], "radius": 1e-3}]}
+    rest = dict(RUN, gravity=[0, 0, 0], end=1e-3, interval=5e-4, boundaries=[FLOOR], insert=[], clumps=[pair],
+                fill=[dict(RUN["fill"][0], group="bed"), dict(RUN["fill"][1], low=[0.006, 0.006, 0.042], high=[0.014, 0.014, 0.046])],
+                particles=[{"clump": "pair", "r": [x, y, 0.06], "group": "bed"} for x, y in ((0.009, 0.008), (0.0105, 0.012))])
+    x_cut = 0.0098  # between the members of both clumps; the centre of mass of the first one is below
+
+    def box(r):
+        return 0.002 <= r[0] <= 0.009 and 0.002 <= r[1] <= 0.02 and 0.01 <= r[2] <= 0.044
+
+    def cylinder(r):  # inclined in the plane of y and z
+        along = ((r[1] - 0.01) + 7 * (r[2] - 0.005)) / 50 ** 0.5
+        away = [r[0] - 0.01, r[1] - 0.01 - along / 50 ** 0.5, r[2] - 0.005 - 7 * along / 50 ** 0.5]
+        return 0 <= along <= 0.042 and sum(a * a for a in away) <= 0.006 ** 2
+
+    shapes = (({"type": "box", "low": [0.002, 0.002, 0.01], "high": [0.009, 0.02, 0.044]}, box),
+              ({"type": "cylinder", "r": [0.01, 0.01, 0.005], "axis": [0, 1, 7], "radius": 0.006, "length": 0.042}, cylinder),
+              ({"type": "half_space", "r": [x_cut, 0, 0], "normal": [-2, 0, 0]}, lambda r: r[0] <= x_cut))
+
+    def left(name, **changes):
+        runs.finish(runs.case(name, **dict(rest, **changes)), "--output", name)
+        return {row["id"]: row for row in table(runs, name, "particles.csv")}
+
+    whole = left("uncut", stages=[])
+    place = {key: [float(row[axis]) for axis in "xyz"] for key, row in whole.items()}
+    for key, row in whole.items():  # of a clump: the mean of its two members
+        if row["clump"] not in ("", "-1") and key != row["clump"]:
+            place[key] = place[row["clump"]] = [(a + b) / 2 for a, b in zip(place[key], place[row["clump"]])]
+    number = {name: str(k) for k, name in enumerate(runs.summary("uncut")["groups"])}
+    for region, contains in shapes:
+        for only in (None, "bed", "lid"):
+            cut = dict(region, group=only) if only else region
+            rest_of = left("cut", stages=[{"name": "wait", "duration": 5e-4}, {"name": "cut", "remove": [cut]}])
+            expected = {key for key, r in place.items()
+                        if not (contains(r) and (only is None or whole[key]["group"] == number[only]))}
+            expect(set(rest_of) == expected, f"{cut}: {set(rest_of) ^ expected}")
+            stages = runs.summary("cut")["stages"]
+            expect(stages[1]["removed"] == len(whole) - len(expected) > 0 and "removed" not in stages[0], f"{cut}: {stages}")
+            runs.remove("cut")
+    # several at once, from the initial state; a region in which nothing is
+    far = {"type": "half_space", "r": [0, 0, 0.075], "normal": [0, 0, 1]}
+    both = left("both", stages=[{"name": "cut", "remove": ["lid", far, shapes[0][0]]}])
+    expect(set(both) == {key for key, r in place.items() if whole[key]["group"] != number["lid"] and not box(r)}, "groups and regions")
+    err = runs.finish(runs.case("none", **dict(rest, stages=[{"name": "cut", "remove": [far]}])), "--output", "none")
+    expect("stage 'cut': remove: no particle is in its groups and regions at t = 0 s" in err, f"{err}")
+    expect(runs.summary("none")["stages"][0]["removed"] == 0 and len(table(runs, "none", "particles.csv")) == len(whole), "nothing is cut")
+
+
+def cut_of_a_bed(runs):
+    """A bed is cut while it moves: one result for the number of threads and a continuation at the cut"""
+    at = 0.02
+    case = runs.case("bed", **dict(RUN, end=0.03, insert=[], stages=[
+        {"name": "settle", "duration": at}, {"name": "cut", "remove": [{"type": "half_space", "r": [0, 0, 0.012], "normal": [0, 0, 1]}]}]))
+    runs.finish(case, "--output", "bed")
+    removed = table(runs, "bed", "outflow.csv")
+    expect(len(removed) > 5 and all(float(row["z"]) >= 0.012 - 1e-9 for row in removed), f"above the plane: {removed[:2]}")
+    runs.finish(case, "--output", "bed2", "--threads", "2")
+    expect(content(runs, "bed") == content(runs, "bed2"), "2 threads")
+    for end in (at - 5e-6, at, at + 5e-6):
+        runs.finish(case, "--output", "part", "--end", f"{end:.9g}")
+        runs.finish(case, "--output", "part", "--resume", "--end", "0.03")
+        expect(content(runs, "part")[1] == content(runs, "bed")[1] and table(runs, "part", "outflow.csv") == removed, f"continued at {end}")
+        runs.remove("part")
+
+
 def fields(runs):
     """The fields of the groups add up to those of all particles, up to the forces between groups, which cancel"""
     grid = {"low": [-0.002, -0.002, -0.002], "high": [0.022, 0.022, 0.08], "cells": [1, 1, 1], "width": 0.002, "edges": "closed",
@@ -238,9 +316,11 @@ def main():
         errors(runs)
         whole_entries(runs)
         clumps(runs)
+        cuts(runs)
+        cut_of_a_bed(runs)
         fields(runs)
         one_result(runs)
-    print("stages: closed forms, time-outs, errors, one result with interruptions; groups and their removal")
+    print("stages: closed forms, time-outs, errors, one result with interruptions; groups; removal of groups and regions")
 
 
 if __name__ == "__main__":

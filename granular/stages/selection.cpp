@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/stages/selection.hpp"
+
+#include "granular/case/groups.hpp"
+#include "granular/world/world.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace hilda::granular {
+
+bool CutRegion::contains(const Vec3& x) const
+{
+    const Vec3 d = x - r;
+    const double along = d.dot(axis);
+    switch (shape) {
+        case Shape::everywhere:
+            return true;
+        case Shape::box:
+            return low.x <= x.x && x.x <= high.x && low.y <= x.y && x.y <= high.y && low.z <= x.z &&
+                   x.z <= high.z;
+        case Shape::cylinder:
+            return 0 <= along && along <= length && (d - along * axis).norm() <= radius;
+        case Shape::half_space:
+            return along >= 0;
+    }
+    return false;
+}
+
+Selection read_selection(ObjectReader o)
+{
+    Selection s;
+    CutRegion& region = s.region;
+    const std::string type = o.one_of("type", {"box", "cylinder", "half_space"});
+    if (type == "box") {
+        region.shape = CutRegion::Shape::box;
+        region.low = o.vec3("low"), region.high = o.vec3("high");
+        for (const auto& [low, high, axis] : {std::tuple{region.low.x, region.high.x, 0u},
+                                              {region.low.y, region.high.y, 1u},
+                                              {region.low.z, region.high.z, 2u}})
+            if (!(high > low))
+                o.fail("high", axis,
+                       "high must be above low, " + io::shortest(low) + ", got " + io::shortest(high));
+    } else {
+        const bool is_cylinder = type == "cylinder";
+        region.shape = is_cylinder ? CutRegion::Shape::cylinder : CutRegion::Shape::half_space;
+        region.r = o.vec3("r");
+        region.axis = o.direction(is_cylinder ? "axis" : "normal");
+        if (is_cylinder) region.radius = o.positive("radius"), region.length = o.positive("length");
+    }
+    if (o.find("group") != nullptr) s.group = o.name("group");
+    o.finish();
+    return s;
+}
+
+std::vector<std::uint32_t> selected(const World& w, const Groups& groups,
+                                    const std::vector<Selection>& selections)
+{
+    std::vector<std::uint32_t> ids;
+    const auto take = [&](std::uint32_t id, const Vec3& x) {
+        const int number = groups.of(id);
+        const auto contains = [&](const Selection& s) {
+            return (s.group.empty() ||
+                    (number != Groups::none && groups.names[static_cast<std::size_t>(number)] == s.group)) &&
+                   s.region.contains(x);
+        };
+        if (std::any_of(selections.begin(), selections.end(), contains)) ids.push_back(id);
+    };
+    w.each_particle([&](const Particle& p) {
+        if (p.clump < 0) take(p.id, p.r);
+    });
+    for (const Clump& c : w.clumps()) take(c.id, c.r);
+    std::sort(ids.begin(), ids.end());
+    return ids;
+}
+
+}  // namespace hilda::granular

@@ -78,7 +78,9 @@ EVERYTHING = {
     "stages": [{"name": "settle", "duration": 1e-5, "until": {"kinetic_energy": 1e-9, "share": 1e-4, "from": 1e-5, "interval": 1e-5},
                 "on_timeout": "warn"},
                {"name": "load", "end": 0.5, "set": {"/boundaries/lid/F": [0, 0, "-t"], "/laws/0/mu": 0.2, "/insert/feed/active": False},
-                "remove": ["ball"]}]}
+                "remove": ["ball", {"type": "box", "low": [0, 0, 0], "high": [0.1, 0.1, 0.1], "note": "a corner"},
+                           {"type": "cylinder", "r": [0, 0, 0], "axis": [0, 0, 1], "radius": 0.1, "length": 0.2, "group": "ball"},
+                           {"type": "half_space", "r": [0, 0, 1.5], "normal": [0, 0, 1], "group": "ball"}]}]}
 
 # Keys that were renamed. The old name is read with a notice that gives the new one.
 RENAMED = {"every": "interval", "frames_every": "frame_interval", "checkpoint_every": "checkpoint_interval"}
@@ -318,6 +320,12 @@ BY_BOTH = [
     ("/insert/0/interval", 0, "/insert/0/interval: interval must be positive"),
     ("/insert/0/on_overlap", "delete", "/insert/0/on_overlap: unknown on_overlap"),
     ("/insert/0/tries", 100, "/insert/0/tries: tries must be at least 200"),
+    ("/stages/1/remove/1/low", MISSING, "/stages/1/remove/1: missing key 'low'"),
+    ("/stages/1/remove/1/group", "", "/stages/1/remove/1/group: group must be a name without control characters, got \"\""),
+    ("/stages/1/remove/2/length", 0, "/stages/1/remove/2/length: length must be positive, got 0"),
+    ("/stages/1/remove/3/radius", 0.1, "/stages/1/remove/3/radius: unknown key \"radius\""),
+    ("/stages/1/remove/3/type", "plane", "/stages/1/remove/3/type: unknown type \"plane\""),
+    ("/stages/1/remove/0", 3, "/stages/1/remove/0: remove must list names of groups and regions, got 3"),
     ("/insert/0/region", MISSING, "/insert/0: missing key 'region'"),
     ("/insert/0/region/type", "ball", "/insert/0/region/type: unknown type"),
     ("/insert/1/region/axis", [0, 0, 1], "/insert/1/region/axis: unknown key \"axis\""),

@@ -313,7 +313,7 @@ ValidationResult run(const ValidationOptions& options)
         "study", {"mu", "mu_r", "speed", "E", "seeds", "angle", "error", "spread", "grains", "r2"}, {}},
         heaps{"heaps", {"mu", "mu_r", "speed", "E", "seed", "left", "right", "r2", "grains"}, {}},
         surface{"surface", {"mu", "mu_r", "speed", "E", "seed", "x", "z"}, {}},
-        spheres{"spheres", {"mu", "mu_r", "x", "z", "radius"}, {}};
+        spheres{"spheres", {"mu", "mu_r", "speed", "E", "seed", "x", "z", "radius"}, {}};
     for (Heaps& h : all) {
         for (h.of.seed = 1; h.of.seed <= h.seeds; ++h.of.seed) {
             RestingHeap one;
@@ -337,7 +337,8 @@ ValidationResult run(const ValidationOptions& options)
             if (h.of.mu_r == mu_r_reference)
                 for (const HeapSphere& p : one.spheres)
                     if (h.of.seed == 1 && std::abs(p.r.y) < h.of.d / 2)
-                        spheres.rows.push_back({h.of.mu, h.of.mu_r, p.r.x, p.r.z, p.radius});
+                        spheres.rows.push_back(
+                            {h.of.mu, h.of.mu_r, h.of.speed, h.of.E, seed, p.r.x, p.r.z, p.radius});
         }
         table.rows.push_back({h.of.mu, h.of.mu_r, h.of.speed, h.of.E, static_cast<double>(h.seeds), h.mean(),
                               h.error(), std::sqrt(h.variance()), h.grains, h.r2});

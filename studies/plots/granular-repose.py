@@ -47,7 +47,7 @@ def draw(folder):
     for k, row in enumerate((over_mu[0], where(over_mu, mu=mu)[0])):
         axes = figure.add_subplot(panels[0, 3 * k:3 * (k + 1)])
         mine = {"mu": row["mu"], "mu_r": mu_r, "speed": row["speed"], "E": row["E"], "seed": "1"}
-        picture(axes, row, where(heaps, **mine)[0], where(spheres, mu=row["mu"], mu_r=mu_r), where(surface, **mine))
+        picture(axes, row, where(heaps, **mine)[0], where(spheres, **mine), where(surface, **mine))
 
     profile, first, second = (figure.add_subplot(panels[1, 2 * k:2 * (k + 1)]) for k in range(3))
     for n, row in enumerate(over_mu + [r for r in over_mu_r if r["mu_r"] != mu_r]):

@@ -175,7 +175,7 @@ FlankAngles flank_angles(const HeapSurface& surface, const Heap& heap)
         }
         const StraightLine line(x, z);
         (side < 0 ? out.left : out.right) = -side * std::atan(line.b) * 180 / std::numbers::pi;
-        out.r2 = std::min(out.r2, line.r2);
+        out.r2 = min_or_nan(out.r2, line.r2);
     }
     return out;
 }
@@ -272,7 +272,7 @@ std::vector<ValidationCheck> checks(const std::vector<Heaps>& all)
     const Heap standard = all.front().of;
     for (const Heaps& h : all) {
         variance += h.variance() / static_cast<double>(all.size());
-        balance = max_or_nan(balance, h.balance), least_r2 = std::min(least_r2, h.r2);
+        balance = max_or_nan(balance, h.balance), least_r2 = min_or_nan(least_r2, h.r2);
         if (h.of.speed != standard.speed || h.of.E != standard.E) continue;
         if (h.of.mu_r == mu_r_reference) over_mu[h.of.mu] = h.mean();
         if (h.of.mu == mu_reference) over_mu_r[h.of.mu_r] = h.mean();
@@ -327,7 +327,7 @@ ValidationResult run(const ValidationOptions& options)
             const HeapSurface s = surface_of(one.spheres, h.of);
             const FlankAngles a = flank_angles(s, h.of);
             h.angles.push_back(a);
-            h.grains += one.grains / h.seeds, h.r2 = std::min(h.r2, a.r2);
+            h.grains += one.grains / h.seeds, h.r2 = min_or_nan(h.r2, a.r2);
             h.balance = max_or_nan(h.balance, std::abs(one.balance));
             const double seed = h.of.seed;
             heaps.rows.push_back(

@@ -199,7 +199,8 @@ ShearRecord::Peak ShearRecord::peak(double window) const
     for (const double first : x) {
         const double from = first - half, to = from + window;
         if (to > x.back() + 1.01 * half) break;
-        if (const double now = mean(tau, from, to); now > largest.tau) largest = {(from + to) / 2, now};
+        if (const double now = max_or_nan(largest.tau, mean(tau, from, to)); now != largest.tau)
+            largest = {(from + to) / 2, now};
     }
     return largest;
 }
@@ -287,7 +288,7 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
             slow = ratio;
         else {
             sigma.push_back(record.sigma), tau.push_back(peak);
-            least = std::min(least, ratio), largest = max_or_nan(largest, ratio);
+            least = min_or_nan(least, ratio), largest = max_or_nan(largest, ratio);
             if (test.stress == reference_stress) reference = ratio;
         }
     }

@@ -102,8 +102,10 @@ struct ValidationCheck {
     bool passed() const { return measured >= lower && measured <= upper; }
 };
 
-/// Maximum that propagates NaN: the result is NaN if a or b is NaN.
+/// Maximum and minimum that propagate NaN: the result is NaN if a or b is NaN. std::max and std::min ignore
+/// it, so that the check of a failed run would pass.
 inline double max_or_nan(double a, double b) { return a != a || b <= a ? a : b; }
+inline double min_or_nan(double a, double b) { return a != a || b >= a ? a : b; }
 
 struct ValidationResult {
     std::vector<ValidationTable> tables;

@@ -312,22 +312,26 @@ struct Measured {
     double pull = 0, load = 0, torque = 0, sinkage = 0, power = 0, dissipated = 0;
 };
 
-/// The smallest differences from a slip to the next one, for one shape
-struct Increases {
-    double pull = infinite, torque = infinite;
-    double zero = std::nan("");  ///< slip at which the pull changes its sign
-    Measured least_sunk, last;
+/// Quantities of the tests with one wheel over the slip; NaN if one of the tests has failed
+struct OverSlip {
+    double pull = infinite, torque = infinite;         ///< smallest increases to the next slip [N, N m]
+    double zero = std::nan("");                        ///< slip at which the pull changes its sign
+    double sinkage = infinite, least_sunk = infinite;  ///< least sinkage and its slip [m, 1]
 
-    explicit Increases(const std::vector<Measured>& of)
+    explicit OverSlip(const std::vector<Measured>& of)
     {
-        least_sunk = last = of.front();
-        for (std::size_t k = 1; k < of.size(); last = of[k], ++k) {
+        for (std::size_t k = 0; k < of.size(); ++k) {
             const Measured& m = of[k];
-            if (m.sinkage < least_sunk.sinkage) least_sunk = m;
-            pull = std::min(pull, m.pull - last.pull), torque = std::min(torque, m.torque - last.torque);
+            if (const double least = min_or_nan(sinkage, m.sinkage); least != sinkage)
+                sinkage = least, least_sunk = std::isnan(least) ? least : m.test.slip;
+            if (k == 0) continue;
+            const Measured& last = of[k - 1];
+            pull = min_or_nan(pull, m.pull - last.pull);
+            torque = min_or_nan(torque, m.torque - last.torque);
             if (last.pull < 0 && m.pull >= 0)
                 zero = last.test.slip - last.pull * (m.test.slip - last.test.slip) / (m.pull - last.pull);
         }
+        if (std::isnan(pull)) zero = pull;
     }
     static constexpr double infinite = 1e300;
 };
@@ -346,11 +350,11 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
                              [&](const Measured& m) { return m.test.slip == slip; });
     };
     const std::vector<Measured> cylinder = of(WheelShape::cylinder);
-    const Increases by_slip(cylinder);
+    const OverSlip by_slip(cylinder);
     double load = 0, power = infinite, dissipated = infinite;
     for (const Measured& m : all) {
         load = max_or_nan(load, std::abs(m.load / wheel_load - 1));
-        power = std::min(power, m.power), dissipated = std::min(dissipated, m.dissipated);
+        power = min_or_nan(power, m.power), dissipated = min_or_nan(dissipated, m.dissipated);
     }
     const Measured rolling = at(cylinder, 0.3), sliding = at(of(WheelShape::cylinder, false), 0.3),
                    prism = at(of(WheelShape::prism), 0.3);
@@ -358,8 +362,8 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
         {"least increase of the pull to the next slip [N]", by_slip.pull, 0, none},
         {"slip at which the pull changes its sign", by_slip.zero, -0.1, 0.3},
         {"least increase of the torque to the next slip [N m]", by_slip.torque, 0, none},
-        {"slip of the least sinkage", by_slip.least_sunk.test.slip, -0.3, 0.3},
-        {"sinkage at slip 0.7 over the least", by_slip.last.sinkage / by_slip.least_sunk.sinkage, 1, none},
+        {"slip of the least sinkage", by_slip.least_sunk, -0.3, 0.3},
+        {"sinkage at slip 0.7 over the least", cylinder.back().sinkage / by_slip.sinkage, 1, none},
         {"vertical load over the weight of the wheel - 1, largest", load, 0, 0.02},
         {"least torque omega - pull v [W]", power, 0, none},
         {"least dissipation of the contacts [W]", dissipated, 0, none},
@@ -371,15 +375,15 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
          prism.torque / rolling.torque - 1, -0.1, 0.1}};
     for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre})
         if (const std::vector<Measured> mesh = of(shape); !mesh.empty()) {
-            const Increases increases(mesh);
+            const OverSlip over_slip(mesh);
             const std::string name = wheel_shape_names[static_cast<int>(shape)];
             out.push_back(
-                {name + ": least increase of the pull to the next slip [N]", increases.pull, 0, none});
+                {name + ": least increase of the pull to the next slip [N]", over_slip.pull, 0, none});
             out.push_back(
-                {name + ": least increase of the torque to the next slip [N m]", increases.torque, 0, none});
+                {name + ": least increase of the torque to the next slip [N m]", over_slip.torque, 0, none});
             if (shape == WheelShape::tyre)
                 out.push_back(
-                    {name + ": slip at which the pull changes its sign", increases.zero, -0.1, 0.3});
+                    {name + ": slip at which the pull changes its sign", over_slip.zero, -0.1, 0.3});
         }
     return out;
 }

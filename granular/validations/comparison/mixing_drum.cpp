@@ -204,8 +204,9 @@ ValidationResult run(const ValidationOptions& options)
                all = of_M1 + of_M2;
     // The grains circulate, and the distance of the centres oscillates with them.
     const auto n = static_cast<std::ptrdiff_t>(m.separation.size());
-    const double early = *std::max_element(m.separation.begin(), m.separation.begin() + 2 * n / 5),
-                 last = *std::max_element(m.separation.end() - 2 * n / 5, m.separation.end());
+    const double early =
+                     std::accumulate(m.separation.begin(), m.separation.begin() + 2 * n / 5, 0., max_or_nan),
+                 last = std::accumulate(m.separation.end() - 2 * n / 5, m.separation.end(), 0., max_or_nan);
     ValidationTable table{
         "study",
         {"grains_M1", "grains_M2", "size", "softness", "zone1_M1", "zone1_M2", "zone2_M1", "zone2_M2",

@@ -92,7 +92,7 @@ std::size_t BallMotion::stop() const
 double BallMotion::peak() const
 {
     double a = 0;
-    for (std::size_t k = 0; k + 1 < v.size(); ++k) a = std::max(a, (v[k + 1] - v[k]) / (t[k + 1] - t[k]));
+    for (std::size_t k = 0; k + 1 < v.size(); ++k) a = max_or_nan(a, (v[k + 1] - v[k]) / (t[k + 1] - t[k]));
     return a;
 }
 
@@ -179,7 +179,7 @@ ValidationResult run(const ValidationOptions& options)
         for (std::size_t k = contact; k < stop; ++k)
             rise = max_or_nan(rise, std::abs(m.v[k]) / std::abs(m.v[contact]));
         lost = max_or_nan(lost, std::abs(m.lost));
-        lowest = std::min(lowest, m.z[stop] / BallMotion::radius);
+        lowest = min_or_nan(lowest, m.z[stop] / BallMotion::radius);
         depths.push_back(m.depth());
     }
     const double d = 2 * all.front().radius(), no_bound = 1e3;

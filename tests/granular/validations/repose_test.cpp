@@ -65,6 +65,8 @@ TEST_CASE("the angles of the flanks of a roof", "[granular][repose]")
     CHECK(a.right == Approx(std::atan(0.25) * 180 / M_PI));
     CHECK(a.mean() == Approx((a.left + a.right) / 2));
     CHECK(a.r2 == Approx(1));
+    s.z[10] = std::nan("");
+    CHECK(std::isnan(flank_angles(s, heap).r2));
 }
 
 TEST_CASE("a heap is the same for any number of threads, and friction makes it steeper (long)",

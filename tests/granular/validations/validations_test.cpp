@@ -100,7 +100,7 @@ TEST_CASE("a check fails if its value is NaN or out of bounds", "[granular][vali
     CHECK(ValidationCheck{"", 1, 1, 1}.passed());
     CHECK_FALSE(ValidationCheck{"", 1.1, 0, 1}.passed());
     for (const auto& [a, b] : {std::pair(none, 1.), std::pair(1., none), std::pair(none, none)})
-        CHECK(std::isnan(max_or_nan(a, b)));
-    CHECK(max_or_nan(1, 2) == 2);
-    CHECK(max_or_nan(2, 1) == 2);
+        CHECK((std::isnan(max_or_nan(a, b)) && std::isnan(min_or_nan(a, b))));
+    for (const auto& [a, b] : {std::pair(1., 2.), std::pair(2., 1.)})
+        CHECK((max_or_nan(a, b) == 2 && min_or_nan(a, b) == 1));
 }

@@ -101,6 +101,15 @@ TEST_CASE("a drum lifts its grains, and its torque is their moment (long)", "[gr
     CHECK(torque == Approx(gravity).epsilon(0.1));
 }
 
+TEST_CASE("the peak acceleration of a ball is NaN if one of its velocities is", "[granular][comparison]")
+{
+    BallMotion m;
+    m.t = {0, 1, 2, 3}, m.z = {1, 1, 1, 1}, m.v = {-5, -3, 0, 1};
+    CHECK(m.peak() == 3);
+    m.v[1] = std::nan("");
+    CHECK(std::isnan(m.peak()));
+}
+
 TEST_CASE("a ball falls freely onto a bed, which stops it (long)", "[granular][comparison]")
 {
     const Penetration test{.scale = {.size = 5, .softness = 10}, .time = 0.04};

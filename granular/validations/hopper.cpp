@@ -172,15 +172,16 @@ ValidationResult run(const ValidationOptions& options)
     options.kept.part(
         [&] { bed = settle(options.device, [&](double share) { options.progress(share / parts); }); },
         [&](io::Archive& a) { a.list(bed); });
+    options.progress(++done / parts);
     const auto flow_of = [&](const std::vector<Grain>& of, double outlet, double refill) {
         Flow flow;
-        options.progress(++done / parts);
         options.kept.part([&] { flow = discharge(of, outlet, refill, options); },
                           [&](io::Archive& a) {
                               a.value(flow.rate), a.value(flow.steady), a.value(flow.balance),
                                   a.value(flow.left);
                               a.list(flow.mass);
                           });
+        options.progress(++done / parts);
         return flow;
     };
     const double density = bulk_density(bed), height = height_of(bed);

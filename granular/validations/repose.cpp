@@ -118,7 +118,7 @@ struct Plate {
         return {.what = what,
                 .unit = mass() * g * heap.d / 2,
                 .interval = std::lround(0.01 / heap.h),
-                .longest = world.t() + longest,
+                .longest = longest,
                 .energy = energy};
     }
 

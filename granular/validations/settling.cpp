@@ -4,16 +4,19 @@
 #include "io/error.hpp"
 #include "io/message.hpp"
 
+#include <algorithm>
+
 namespace hilda::granular {
 
 void settle(World& world, const Settling& of, const std::function<void(double)>& progress)
 {
+    const double start = world.t();
     while (true) {
         world.step(of.interval);
-        progress(world.t() / of.longest);
-        const double energy = world.kinetic_energy() / of.unit;
-        if (world.t() > 0.1 && energy < of.energy) return;
-        if (world.t() > of.longest)
+        const double time = world.t() - start, energy = world.kinetic_energy() / of.unit;
+        progress(std::min(1., time / of.longest));
+        if (time > of.shortest && energy < of.energy) return;
+        if (time > of.longest)
             throw io::NumericalFailure(
                 "not_settled", io::formatted("%s has not settled after %g s: %.3g m g R per grain, and %g is "
                                              "allowed",

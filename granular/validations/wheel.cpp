@@ -207,16 +207,16 @@ void WheelRecord::append(const WheelRecord& other)
     };
     add(&WheelRecord::t), add(&WheelRecord::pull), add(&WheelRecord::load), add(&WheelRecord::torque),
         add(&WheelRecord::sinkage);
-    power += other.power, dissipated += other.dissipated;
+    from = other.from, power += other.power, dissipated += other.dissipated;
 }
 
-WheelRecord::Mean WheelRecord::mean(const std::vector<double>& column, double from) const
+WheelRecord::Mean WheelRecord::mean(const std::vector<double>& column, double after) const
 {
     double n = 0, sum = 0, squares = 0;
     for (std::size_t k = 0; k < t.size(); ++k)
-        if (t[k] > from) n += 1, sum += column[k], squares += column[k] * column[k];
+        if (t[k] > after) n += 1, sum += column[k], squares += column[k] * column[k];
     const double value = sum / n;
-    return {value, std::sqrt(std::max(0., squares / n - value * value))};
+    return {value, std::sqrt(max_or_nan(0, squares / n - value * value))};
 }
 
 WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const ValidationOptions& options)
@@ -245,11 +245,12 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
     constexpr long between = 20;  // steps between two evaluations of the loads
     const auto rows = std::lround(test.duration / test.interval),
                loads = std::lround(test.interval / bed.h / static_cast<double>(between));
-    const double from = (1 - test.averaged) * test.duration;
-    double dissipated = 0, since = 0;
+    const auto end_of = [&](long row) { return static_cast<double>(row + 1) * test.interval; };
+    double dissipated = std::nan("");  // before out.from [J]
+    out.from = end_of(rows - 1);
     for (long k = 0; k < rows; ++k) {
-        const double t = static_cast<double>(k + 1) * test.interval;
-        if (since == 0 && t > from) dissipated = world.watch().dissipated, since = t - test.interval;
+        if (std::isnan(dissipated) && end_of(k - 1) > (1 - test.averaged) * test.duration - bed.h / 2)
+            out.from = end_of(k - 1), dissipated = world.watch().dissipated;
         double pull = 0, load = 0, torque = 0, sinkage = 0;
         for (long i = 0; i < loads; ++i) {
             world.step(between);
@@ -261,11 +262,11 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
                 sinkage += (surface(before, wheel.r.x, bed.R) - (wheel.r.z - radius)) /
                            std::ceil(static_cast<double>(loads) / 10);
         }
-        out.t.push_back(t), out.pull.push_back(pull), out.load.push_back(load);
+        out.t.push_back(end_of(k)), out.pull.push_back(pull), out.load.push_back(load);
         out.torque.push_back(torque), out.sinkage.push_back(sinkage);
     }
-    out.power = out.mean(out.torque, from).value * omega - out.mean(out.pull, from).value * v;
-    out.dissipated = scale * (world.watch().dissipated - dissipated) / (test.duration - since);
+    out.power = out.mean(out.torque, out.from).value * omega - out.mean(out.pull, out.from).value * v;
+    out.dissipated = scale * (world.watch().dissipated - dissipated) / (end_of(rows - 1) - out.from);
     const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(number)];
     out.wheel_x = wheel.r.x, out.wheel_z = wheel.r.z;
     for (const Particle& p : world.particles()) out.grain.insert(out.grain.end(), {p.r.x, p.r.z, p.v.norm()});
@@ -425,7 +426,8 @@ ValidationResult run(const ValidationOptions& options)
                 [&](io::Archive& a) {
                     for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage, &r.grain})
                         a.list(*column);
-                    a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x), a.value(r.wheel_z);
+                    a.value(r.from), a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x),
+                        a.value(r.wheel_z);
                 });
             options.progress(++done / parts);
             pooled.append(r);
@@ -437,11 +439,11 @@ ValidationResult run(const ValidationOptions& options)
                 grains.rows.push_back({wheel, test.slip, test.mu_r, r.grain[k], r.grain[k + 1],
                                        r.grain[k + 2], r.wheel_x, r.wheel_z});
         }
-        const double from = (1 - test.averaged) * test.duration, count = beds;
-        const WheelRecord::Mean pull = pooled.mean(pooled.pull, from),
-                                torque = pooled.mean(pooled.torque, from),
-                                sinkage = pooled.mean(pooled.sinkage, from),
-                                load = pooled.mean(pooled.load, from);
+        const double count = beds;
+        const WheelRecord::Mean pull = pooled.mean(pooled.pull, pooled.from),
+                                torque = pooled.mean(pooled.torque, pooled.from),
+                                sinkage = pooled.mean(pooled.sinkage, pooled.from),
+                                load = pooled.mean(pooled.load, pooled.from);
         const double power = pooled.power / count, dissipated = pooled.dissipated / count;
         table.rows.push_back({wheel, test.slip, test.mu_r, count, pull.value, pull.deviation, torque.value,
                               torque.deviation, sinkage.value, sinkage.deviation, load.value, power,

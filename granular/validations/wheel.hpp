@@ -48,7 +48,7 @@ struct WheelTest {
     double mu_r = 0.2;       ///< coefficient of rolling friction
     double slip = 0;         ///< 1 - v/(ω radius)
     double duration = 5;     ///< of the motion [s]
-    double averaged = 0.5;   ///< share of the duration at its end over which means are taken
+    double averaged = 0.5;   ///< share of the duration over which means are taken, at its end
     double interval = 0.05;  ///< between rows of the record [s]
 };
 
@@ -57,17 +57,18 @@ struct WheelRecord {
     /// Means over the intervals: end of the interval [s], pull (F_x) and vertical load [N], driving torque
     /// [N m], sinkage [m]
     std::vector<double> t, pull, load, torque, sinkage;
-    double power = 0;                 ///< mean of torque ω - pull v [W]
-    double dissipated = 0;            ///< mean dissipation of the contacts of the grains [W]
+    double from = 0;                  ///< start of the averaging: of the first interval in this share [s]
+    double power = 0;                 ///< mean of torque ω - pull v after `from` [W]
+    double dissipated = 0;            ///< mean dissipation of the contacts of the grains after `from` [W]
     std::vector<double> grain;        ///< x, z, speed of each grain at the end [m, m/s]
     double wheel_x = 0, wheel_z = 0;  ///< axis of the wheel at the end [m]
 
-    /// Mean and standard deviation of a column over the last intervals
     struct Mean {
         double value = 0, deviation = 0;
     };
-    Mean mean(const std::vector<double>& column, double from) const;
-    /// Appends the columns of the loads and the sinkage of a test on another bed, and adds the powers.
+    /// Mean and standard deviation of a column over the intervals that end after a time
+    Mean mean(const std::vector<double>& column, double after) const;
+    /// Appends the columns of the loads and the sinkage of the same test on another bed, and adds the powers.
     void append(const WheelRecord& other);
 };
 

@@ -32,6 +32,18 @@ TEST_CASE("the bed carries the weight of a wheel, and a larger slip gives more p
     }
     CHECK(driven.mean(driven.pull, from).value > braked.mean(braked.pull, from).value);
     CHECK(driven.mean(driven.torque, from).value > braked.mean(braked.torque, from).value);
+    for (const WheelRecord* r : {&braked, &driven}) CHECK(r->from == Approx(from));
+    // The dissipation of the whole duration is that of both halves. A window that begins within an interval
+    // begins with the next one.
+    WheelTest part = test;
+    part.averaged = 1;
+    const WheelRecord whole = drive(part, soil, {});
+    CHECK(whole.from == 0);
+    part.duration = 0.75;
+    const WheelRecord half = drive(part, soil, {});
+    CHECK(2 * whole.dissipated == Approx(half.dissipated + driven.dissipated));
+    part.averaged = 0.41;
+    CHECK(drive(part, soil, {}).from == Approx(0.45));
     // v = ω radius (1 - slip)
     const double rim = 17 * M_PI / 180 * 0.13;
     CHECK(braked.wheel_x == Approx(0.18 + 1.5 * rim * 1.5).epsilon(1e-6));

@@ -19,6 +19,19 @@ struct Material {
     double E = 0, nu = 0;  ///< Young's modulus [Pa], Poisson's ratio [-]
 };
 
+/// Mass of a sphere [kg]
+inline double sphere_mass(double radius, double density)
+{
+    return 4.0 / 3 * std::numbers::pi * radius * radius * radius * density;
+}
+
+/// Rayleigh time of a sphere, π R √(ρ/G)/(0.1631 ν + 0.8766), G = E/(2 (1 + ν)) [s]
+inline double rayleigh_time(double radius, const Material& m)
+{
+    const double G = m.E / (2 * (1 + m.nu));
+    return std::numbers::pi * radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766);
+}
+
 /// Effective Young's modulus E* with 1/E* = (1 - ν_i²)/E_i + (1 - ν_j²)/E_j [Pa]
 inline double effective_modulus(const Material& i, const Material& j)
 {

@@ -15,8 +15,7 @@ namespace {
 /// Mass of a sphere as the world stores it: its inverse in single precision [kg]
 double stored_mass(double radius, double density)
 {
-    const double mass = 4. / 3 * M_PI * radius * radius * radius * density;
-    return 1 / static_cast<double>(static_cast<float>(1 / mass));
+    return 1 / static_cast<double>(static_cast<float>(1 / sphere_mass(radius, density)));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "granular/validations/cratering.hpp"
 
 #include "granular/case/split_mix.hpp"
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"
 #include "io/error.hpp"
@@ -65,7 +66,7 @@ struct Bed {
         constexpr double packing = 0.6;
         const double spacing = 2.1 * R;
         const int row = static_cast<int>((width - 2 * R) / spacing) + 1;
-        const double pitch = (width - 2 * R) / (row - 1), of_grain = 4 * std::numbers::pi / 3 * R * R * R;
+        const double pitch = (width - 2 * R) / (row - 1), of_grain = sphere_mass(R, 1);  // volume
         const auto count =
             static_cast<std::size_t>(std::lround(packing * width * width * bed_height / of_grain));
         Random random(1);
@@ -88,10 +89,8 @@ struct Bed {
 
     void settle(double R, const std::function<void(double)>& progress)
     {
-        const double weight = glass().density * 4 * std::numbers::pi / 3 * R * R * R * g;
         granular::settle(world,
                          {.what = io::formatted("the bed of grains of R = %g m", R),
-                          .unit = static_cast<double>(world.count()) * weight * R,
                           .interval = std::lround(0.01 / step_of(R)),
                           .longest = longest_settling,
                           .energy = settled_energy},
@@ -117,34 +116,6 @@ struct Bed {
             for (std::size_t a = 1; a < squares - 1; ++a) sum += top[b * squares + a];
         return sum / static_cast<double>((squares - 2) * (squares - 2));
     }
-
-    /// Bulk density between 20 % and 80 % of the height of the surface [kg/m³]
-    double bulk_density(double R, double surface) const
-    {
-        const double low = 0.2 * surface, high = 0.8 * surface;
-        // Volume of the part of a sphere below the height x from its lowest point
-        const auto below = [&](double x) {
-            x = std::clamp(x, 0., 2 * R);
-            return std::numbers::pi * x * x * (R - x / 3);
-        };
-        double volume = 0;
-        for (const Particle& p : world.particles())
-            volume += below(high - (p.r.z - R)) - below(low - (p.r.z - R));
-        return glass().density * volume / (width * width * (high - low));
-    }
-
-    /// Height of the highest grain below the ball [m]
-    double first_contact(double R) const
-    {
-        double highest = 0;
-        for (const Particle& p : world.particles()) {
-            const double across = std::hypot(p.r.x - width / 2, p.r.y - width / 2), reach = diameter / 2 + R;
-            if (across < reach)
-                highest =
-                    std::max(highest, p.r.z + std::sqrt(reach * reach - across * across) - diameter / 2);
-        }
-        return highest;
-    }
 };
 
 }  // namespace
@@ -169,13 +140,14 @@ SettledBed settled_bed(double R, const ValidationOptions& options,
                        const std::function<void(double)>& progress)
 {
     SettledBed bed;
-    options.beds.bed(
+    options.bed(
         bed_case(R),
         [&] {
             Bed now(R, options.device);
             now.fill(R);
             now.settle(R, progress);
-            bed.surface = now.surface(R), bed.density = now.bulk_density(R, bed.surface);
+            bed.surface = now.surface(R), bed.density = bulk_density(equal_spheres(now.world, R), bed.surface,
+                                                                     width * width, glass().density);
             bed.bytes = now.world.to_bytes(run_id);
         },
         [&](io::Archive& a) { a.value(bed.surface), a.value(bed.density), a.list(bed.bytes); });
@@ -187,9 +159,13 @@ Crater impact(const Impact& of, const SettledBed& bed, const ValidationOptions& 
     Bed now(of.R, options.device);
     now.world.from_bytes(bed.bytes, run_id, "settled bed");
     World& world = now.world;
-    const double start = now.first_contact(of.R), r = diameter / 2;
+    const double r = diameter / 2,
+                 start = first_contact(
+                             equal_spheres(world, of.R), r,
+                             [](const Vec3&s) { return std::hypot(s.x - width / 2, s.y - width / 2); }) -
+                         r;
     Boundary& ball = world.boundary(now.ball);
-    ball.mass = of.density * 4 * std::numbers::pi / 3 * r * r * r;
+    ball.mass = sphere_mass(r, of.density);
     ball.inertia = 0.4 * ball.mass * r * r;
     ball.r = {width / 2, width / 2, start + r};
     ball.v = {0, 0, -std::sqrt(2 * g * std::max(of.height + bed.surface - start, 0.))};
@@ -239,14 +215,7 @@ ValidationResult run(const ValidationOptions& options)
     double done = 0;
     const auto parts = static_cast<double>(all.size() + 4 * beds.size());
     for (auto& [R, bed] : beds) {
-        options.kept.part(
-            [&, R = R, &bed = bed] {
-                bed = settled_bed(R, options,
-                                  [&](double share) { options.progress((done + 4 * share) / parts); });
-            },
-            [&, &bed = bed](io::Archive& a) {
-                a.value(bed.surface), a.value(bed.density), a.list(bed.bytes);
-            });
+        bed = settled_bed(R, options, [&](double share) { options.progress((done + 4 * share) / parts); });
         options.progress((done += 4) / parts);
     }
 

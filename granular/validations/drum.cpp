@@ -47,14 +47,13 @@ enum MaterialNumber { grain, wall };
 
 Material glass(const Drum& d) { return {"glass", 2500, d.E, 0.24}; }
 
-double of_grain(const Drum& d) { return 4 * std::numbers::pi / 3 * d.R * d.R * d.R; }
+/// Volume of a grain [m³]
+double of_grain(const Drum& d) { return sphere_mass(d.R, 1); }
 
 PairLaw law(const Drum& d, double e, double friction, double slow)
 {
     PairLaw l = hertz_mindlin(glass(d), e, friction);
-    // The lever arm R/2 is that of the author's results of Sec. 7.1.4.
-    l.rolling =
-        ConstantTorque{.mu_r = static_cast<float>(mu_r), .slow = static_cast<float>(slow), .half_radius = 1};
+    l.rolling = ConstantTorque::with_half_radius(mu_r, slow);
     return l;
 }
 
@@ -256,10 +255,8 @@ std::vector<Vec3> settled_grains(const Drum& d, const ValidationOptions& options
         World& world = now.world;
         const std::vector<Particle> start = lattice(d);
         for (const Particle& p : start) world.add(p);
-        const double weight = static_cast<double>(start.size()) * glass(d).density * of_grain(d) * d.g;
         granular::settle(world,
                          {.what = "the bed of the drum",
-                          .unit = weight * d.R,
                           .interval = std::lround(0.01 / d.h),
                           .longest = longest_settling,
                           .energy = settled_energy},
@@ -267,7 +264,7 @@ std::vector<Vec3> settled_grains(const Drum& d, const ValidationOptions& options
         for (const Particle& p : now.grains())
             if (p.r.z < 0) centres.push_back(p.r);
     };
-    options.beds.bed(bed_case(d), settle, [&](io::Archive& a) { a.list(centres); });
+    options.bed(bed_case(d), settle, [&](io::Archive& a) { a.list(centres); });
     return centres;
 }
 
@@ -352,7 +349,6 @@ double distance(const DrumFlow& a, const DrumFlow& b, double R)
 
 std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
 {
-    constexpr double no_bound = 1e3;
     std::vector<ValidationCheck> out;
     const Measured *flat = nullptr, *last = nullptr;
     for (const Measured& m : all) {
@@ -404,13 +400,8 @@ ValidationResult run(const ValidationOptions& options)
                           all.size()));
     double done = 0;
     const double parts = static_cast<double>(all.size()) + 1;
-    std::vector<Vec3> grains;
-    options.kept.part(
-        [&] {
-            grains = settled_grains(all.front().of.drum, options,
-                                    [&](double share) { options.progress(share / parts); });
-        },
-        [&](io::Archive& a) { a.list(grains); });
+    const std::vector<Vec3> grains =
+        settled_grains(all.front().of.drum, options, [&](double share) { options.progress(share / parts); });
     options.progress((done = 1) / parts);
 
     ValidationTable table{

@@ -9,7 +9,8 @@
 
 #include "granular/insertion/insertion.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
-#include "granular/validations/soft_sphere.hpp"
+#include "granular/validations/bed_geometry.hpp"
+#include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"
 #include "granular/validations/validation.hpp"
 #include "io/message.hpp"
@@ -23,15 +24,12 @@ namespace hilda::granular {
 namespace {
 
 constexpr double g = 9.81, d = 4e-3, spread = 0.15, wall = 11 * d, h = 2.5e-5, mu = 0.1, restitution = 0.7;
-constexpr double settling = 0.35, flow_begin = 0.15, flow_end = 0.5, sample = 5e-3;  // [s]
+constexpr double settling = 0.35, longest_settling = 2, flow_begin = 0.15, flow_end = 0.5,
+                 sample = 5e-3;          // [s]
+constexpr double settled_energy = 1e-2;  ///< largest kinetic energy per grain [m g R]
 constexpr std::size_t grains = 10000;
 
 Material glass() { return {"glass", 2500, 1e7, 0.24}; }
-
-struct Grain {
-    Vec3 r;
-    double radius;
-};
 
 World hopper(double low, double high, double outlet, Device device)
 {
@@ -54,7 +52,7 @@ World hopper(double low, double high, double outlet, Device device)
 }
 
 /// Grains that have fallen from a loose lattice on a closed floor
-std::vector<Grain> settle(Device device, const std::function<void(double)>& progress)
+std::vector<BedSphere> bed_at_rest(Device device, const std::function<void(double)>& progress)
 {
     Random random(1);
     constexpr double most = 0.5 * d * (1 + spread), pitch = 2.12 * most;
@@ -73,34 +71,16 @@ std::vector<Grain> settle(Device device, const std::function<void(double)>& prog
             }
     World world = hopper(-d, all.back().r.z + 2 * d, 0, device);
     for (const Particle& p : all) world.add(p);
-    for (int k = 1; k <= 10; ++k) world.step(std::lround(settling / h / 10)), progress(k / 10.);
-    std::vector<Grain> settled;
+    settle(world,
+           {.what = "the bed",
+            .interval = std::lround(0.01 / h),
+            .longest = longest_settling,
+            .energy = settled_energy,
+            .shortest = settling - h / 2},
+           progress);
+    std::vector<BedSphere> settled;
     for (const Particle& p : world.particles()) settled.push_back({p.r, p.radius});
     return settled;
-}
-
-/// Height below which 98 % of the centres are [m]
-double height_of(const std::vector<Grain>& bed)
-{
-    std::vector<double> z;
-    for (const Grain& p : bed) z.push_back(p.r.z);
-    std::sort(z.begin(), z.end());
-    return z[z.size() * 98 / 100];
-}
-
-/// Mass between 20 % and 80 % of the height over the volume there [kg/m³]
-double bulk_density(const std::vector<Grain>& bed)
-{
-    const double low = 0.2 * height_of(bed), high = 0.8 * height_of(bed);
-    double volume = 0;
-    for (const Grain& p : bed) {
-        const auto below = [&](double z) {  // of a sphere, volume below the height z
-            const double x = std::clamp(z - (p.r.z - p.radius), 0., 2 * p.radius);
-            return std::numbers::pi * x * x * (p.radius - x / 3);
-        };
-        volume += below(high) - below(low);
-    }
-    return glass().density * volume / (std::numbers::pi * wall * wall * (high - low));
 }
 
 struct Flow {
@@ -121,11 +101,12 @@ double rate_of(const std::vector<double>& mass, std::size_t begin, std::size_t e
 }
 
 /// Discharge of a bed. With a refill [kg/s], grains fall on it from above.
-Flow discharge(const std::vector<Grain>& bed, double outlet, double refill, const ValidationOptions& options)
+Flow discharge(const std::vector<BedSphere>& bed, double outlet, double refill,
+               const ValidationOptions& options)
 {
-    const double top = height_of(bed) + 5 * d;
+    const double top = height_of_98_percent(bed) + 5 * d;
     World world = hopper(-5 * d, top + 2 * d, outlet, options.device);
-    for (const Grain& p : bed) world.add(Particle{.r = p.r, .radius = p.radius});
+    for (const BedSphere& p : bed) world.add(Particle{.r = p.r, .radius = p.radius});
     Insertions insertions;
     if (refill > 0) {
         InsertionSpec s;
@@ -168,12 +149,12 @@ ValidationResult run(const ValidationOptions& options)
     if (options.full) outlets = {6 * d, 6.75 * d, 7.5 * d, 8.25 * d, 9 * d, 9.75 * d, 10.5 * d};
     const double parts = static_cast<double>(outlets.size()) + 3;
     double done = 0;
-    std::vector<Grain> bed;
+    std::vector<BedSphere> bed;
     options.kept.part(
-        [&] { bed = settle(options.device, [&](double share) { options.progress(share / parts); }); },
+        [&] { bed = bed_at_rest(options.device, [&](double share) { options.progress(share / parts); }); },
         [&](io::Archive& a) { a.list(bed); });
     options.progress(++done / parts);
-    const auto flow_of = [&](const std::vector<Grain>& of, double outlet, double refill) {
+    const auto flow_of = [&](const std::vector<BedSphere>& of, double outlet, double refill) {
         Flow flow;
         options.kept.part([&] { flow = discharge(of, outlet, refill, options); },
                           [&](io::Archive& a) {
@@ -184,7 +165,8 @@ ValidationResult run(const ValidationOptions& options)
         options.progress(++done / parts);
         return flow;
     };
-    const double density = bulk_density(bed), height = height_of(bed);
+    const double height = height_of_98_percent(bed),
+                 density = bulk_density(bed, height, std::numbers::pi * wall * wall, glass().density);
     ValidationTable study{
         "study", {"bed", "D", "W", "steady", "left", "balance", "height", "bulk_density"}, {}},
         motion{"motion", {"bed", "D", "t", "left"}, {}};
@@ -206,9 +188,9 @@ ValidationResult run(const ValidationOptions& options)
         open.push_back(D - k_beverloo * d), rates.push_back(flow.rate);
         if (D == of_checks) rate = flow.rate;
     }
-    std::vector<Grain> lower;
+    std::vector<BedSphere> lower;
     std::copy_if(bed.begin(), bed.end(), std::back_inserter(lower),
-                 [&](const Grain& p) { return p.r.z + p.radius < 0.7 * height; });
+                 [&](const BedSphere& p) { return p.r.z + p.radius < 0.7 * height; });
     const Flow low = flow_of(lower, of_checks, 0), refilled = flow_of(bed, of_checks, rate);
     add("lower", of_checks, low, 0.7 * height), add("refilled", of_checks, refilled, height);
     const StraightLine line(x, y);

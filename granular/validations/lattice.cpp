@@ -17,7 +17,7 @@ constexpr double R = 0.05, density = 7800, g = 9.81, half_width = lattice::wides
 /// the start, the friction forces after settling depend on the gap, and with them the force at the middle for
 /// μ = 0.2.
 constexpr double initial_gap = 0.2;
-const double m = 4. / 3 * M_PI * R * R * R * density;
+const double m = sphere_mass(R, density);
 
 /// Damping coefficient [1/s]. With the value of the dissertation, 5e4 1/s, a linear contact relaxes in 0.04 s
 /// and the lattice in some seconds. The linear law uses 2500 1/s instead, the value of the scaled law at

@@ -20,6 +20,7 @@
 #include "granular/validations/low_velocity_cratering.hpp"
 
 #include "granular/case/split_mix.hpp"
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"
 #include "io/error.hpp"
@@ -38,8 +39,7 @@ namespace {
 constexpr double earth = 9.81, R = 5e-3;  // [m/s², m]
 constexpr double mu = 0.16, restitution = 0.9, mu_wall = 0.45, restitution_wall = 0.5, mu_r_settling = 0.09,
                  mu_settling = 0.3;
-constexpr double ball_radius = 0.05, ball_mass = 1;               // [m, kg]
-constexpr double of_bead = 4 * std::numbers::pi / 3 * R * R * R;  ///< volume [m³]
+constexpr double ball_radius = 0.05, ball_mass = 1;  // [m, kg]
 
 constexpr double spacing = 2.5 * R, start_speed = 0.3;  ///< of the lattice from which the beads fall [m, m/s]
 /// Largest kinetic energy of the settled bed, per bead [m g R]
@@ -56,9 +56,7 @@ enum MaterialNumber { bead, wall, sphere };
 PairLaw law(double e, double friction, double mu_r)
 {
     PairLaw l = hertz_mindlin(glass(), e, friction);
-    // The lever arm R/2 is that of the author's results of Sec. 7.1.4.
-    if (mu_r > 0)
-        l.rolling = ConstantTorque{.mu_r = static_cast<float>(mu_r), .slow = 1e-4f, .half_radius = 1};
+    if (mu_r > 0) l.rolling = ConstantTorque::with_half_radius(mu_r);
     return l;
 }
 
@@ -93,26 +91,13 @@ struct Cylinder {
         o.delete_lost = true;  // a bead may be thrown out of the domain in reduced gravity
         return o;
     }
-
-    /// Height of the lowest point of the sphere at its first contact when it falls at this place [m]
-    double first_contact(double x) const
-    {
-        constexpr double reach = ball_radius + R;
-        double highest = 0;
-        for (const Particle& p : world.particles()) {
-            const double across = std::hypot(p.r.x - x, p.r.y);
-            if (across < reach)
-                highest = std::max(highest, p.r.z + std::sqrt(reach * reach - across * across) - ball_radius);
-        }
-        return highest;
-    }
 };
 
 /// A body-centred lattice with random displacements, from the floor upwards
 std::vector<Vec3> loose_lattice(const BeadCylinder& c)
 {
-    const auto count =
-        static_cast<std::size_t>(1.1 * 0.6 * std::numbers::pi * c.radius * c.radius * c.depth / of_bead);
+    const auto count = static_cast<std::size_t>(1.1 * 0.6 * std::numbers::pi * c.radius * c.radius * c.depth /
+                                                sphere_mass(R, 1));
     const int n = static_cast<int>(c.radius / spacing) + 1;
     Random random(2);
     const double most = 0.45 * (spacing - 2 * R);
@@ -168,17 +153,15 @@ std::vector<Vec3> settled_beads(const BeadCylinder& c, const ValidationOptions& 
             p.v = (start_speed / direction.norm()) * direction;
             now.world.add(p);
         }
-        granular::settle(
-            now.world,
-            {.what = "the bed of beads",
-             .unit = static_cast<double>(now.world.count()) * glass().density * of_bead * earth * R,
-             .interval = std::lround(0.01 / c.h),
-             .longest = longest_settling,
-             .energy = settled_energy},
-            progress);
+        granular::settle(now.world,
+                         {.what = "the bed of beads",
+                          .interval = std::lround(0.01 / c.h),
+                          .longest = longest_settling,
+                          .energy = settled_energy},
+                         progress);
         for (const Particle& p : now.world.particles()) beads.push_back(p.r);
     };
-    options.beds.bed(bed_case(c), settle, [&](io::Archive& a) { a.list(beads); });
+    options.bed(bed_case(c), settle, [&](io::Archive& a) { a.list(beads); });
     return beads;
 }
 
@@ -200,7 +183,9 @@ CollisionRecord impact(const SlowImpact& of, const std::vector<Vec3>& beads, con
     Boundary& b = world.boundary(now.ball);
     b.mass = ball_mass, b.inertia = 0.4 * ball_mass * ball_radius * ball_radius;
     const double v = of.speed - of.g * free_fall;
-    b.r = {of.x, 0, now.first_contact(of.x) + v * free_fall + of.g * free_fall * free_fall / 2 + ball_radius};
+    const double contact = first_contact(equal_spheres(world, R), ball_radius,
+                                         [&](const Vec3& r) { return std::hypot(r.x - of.x, r.y); });
+    b.r = {of.x, 0, contact + v * free_fall + of.g * free_fall * free_fall / 2};
     b.v = {0, 0, -v};
 
     CollisionRecord out{.interval = sample, .g = of.g, .z = {}, .v = {}, .a = {}, .a_low = {}};
@@ -349,21 +334,21 @@ private:
     /// Two impacts that differ in one parameter, or not at all
     void order(const Measured& a, const Measured& b)
     {
-        constexpr double none = 1e3;  // no other bound
         const bool same_mu_r = a.of.mu_r == b.of.mu_r, same_speed = a.of.speed == b.of.speed,
                    same_bed = a.of.g == b.of.g && a.of.height == b.of.height && a.of.x == 0 && b.of.x == 0;
         if (same_bed && same_speed && a.of.mu_r == 0 && b.of.mu_r == 0.09) {
             add("depth without rolling friction over that with: " + name(b.of), a.c.depth / b.c.depth, 1,
-                none);
-            add("time without rolling friction over that with: " + name(b.of), a.c.time / b.c.time, 1, none);
+                no_bound);
+            add("time without rolling friction over that with: " + name(b.of), a.c.time / b.c.time, 1,
+                no_bound);
         } else if (same_bed && same_mu_r && a.of.speed < 0.6 && a.of.speed > 0.5 && b.of.speed == 1.03) {
-            add("depth over that of half the speed: " + name(b.of), b.c.depth / a.c.depth, 1, none);
-            add("peak over that of half the speed: " + name(b.of), b.c.peak / a.c.peak, 1, none);
+            add("depth over that of half the speed: " + name(b.of), b.c.depth / a.c.depth, 1, no_bound);
+            add("peak over that of half the speed: " + name(b.of), b.c.peak / a.c.peak, 1, no_bound);
             add("time over that of half the speed: " + name(b.of), b.c.time / a.c.time, 0, 1);
         } else if (same_mu_r && same_speed && a.of.g == earth && a.of.height == earth_height &&
                    b.of.g == vesta) {
-            add("depth over that on the earth: " + name(b.of), b.c.depth / a.c.depth, 1, none);
-            add("time over that on the earth: " + name(b.of), b.c.time / a.c.time, 1, none);
+            add("depth over that on the earth: " + name(b.of), b.c.depth / a.c.depth, 1, no_bound);
+            add("time over that on the earth: " + name(b.of), b.c.time / a.c.time, 1, no_bound);
         }
     }
 
@@ -414,13 +399,8 @@ ValidationResult run(const ValidationOptions& options)
     const double settling = options.full ? 8 : 4;  // impacts that take as long
     double done = 0;
     const auto parts = static_cast<double>(all.size()) + settling;
-    std::vector<Vec3> beads;
-    options.kept.part(
-        [&] {
-            beads = settled_beads(all.front().cylinder, options,
-                                  [&](double share) { options.progress(settling * share / parts); });
-        },
-        [&](io::Archive& a) { a.list(beads); });
+    const std::vector<Vec3> beads = settled_beads(
+        all.front().cylinder, options, [&](double share) { options.progress(settling * share / parts); });
     options.progress((done = settling) / parts);
 
     ValidationTable table{"study",

@@ -115,19 +115,14 @@ struct Plate {
 
     Settling until(const std::string& what, double longest, double energy) const
     {
-        return {.what = what,
-                .unit = mass() * g * heap.d / 2,
-                .interval = std::lround(0.01 / heap.h),
-                .longest = longest,
-                .energy = energy};
+        return {.what = what, .interval = std::lround(0.01 / heap.h), .longest = longest, .energy = energy};
     }
 
     /// The walls sink from the highest grain until their upper edges are at z = 0.
     void open(const std::function<void(double)>& progress)
     {
         constexpr int parts = 50;
-        double highest = 0;
-        world.each_particle([&](const Particle& p) { highest = std::max(highest, p.r.z + p.radius); });
+        const double highest = highest_point(world.particles());
         const long steps = std::lround(highest / heap.speed / heap.h / parts);
         world.boundary(walls).r.z = highest - top(heap);
         world.boundary(walls).v.z = -highest / (static_cast<double>(steps) * parts * heap.h);
@@ -138,14 +133,14 @@ struct Plate {
 
 }  // namespace
 
-HeapSurface surface_of(const std::vector<HeapSphere>& spheres, const Heap& heap)
+HeapSurface surface_of(const std::vector<BedSphere>& spheres, const Heap& heap)
 {
     const double half = heap.period() / 2;
     const auto count = [&](double length) { return static_cast<int>(std::lround(length / (heap.d / 4))); };
     const int nx = count(2 * heap.edge()), ny = count(heap.period());
     const double dx = 2 * heap.edge() / nx, dy = heap.period() / ny;
     std::vector<double> highest(static_cast<std::size_t>(nx * ny), 0);
-    for (const HeapSphere& s : spheres) {
+    for (const BedSphere& s : spheres) {
         const auto first = [](double x, double step) { return static_cast<int>(std::ceil(x / step - 0.5)); };
         const double x = s.r.x + heap.edge(), y = s.r.y + half, R = s.radius;  // from the first corner
         for (int i = std::max(0, first(x - R, dx)); i < std::min(nx, first(x + R, dx)); ++i)
@@ -265,7 +260,6 @@ std::vector<Heaps> all_heaps(bool full)
 
 std::vector<ValidationCheck> checks(const std::vector<Heaps>& all)
 {
-    constexpr double no_bound = 1e3;
     double variance = 0, balance = 0, least_r2 = 1;
     std::map<double, double> over_mu, over_mu_r;
     std::vector<ValidationCheck> out;
@@ -335,7 +329,7 @@ ValidationResult run(const ValidationOptions& options)
             for (std::size_t k = 0; k < s.x.size(); ++k)
                 surface.rows.push_back({h.of.mu, h.of.mu_r, h.of.speed, h.of.E, seed, s.x[k], s.z[k]});
             if (h.of.mu_r == mu_r_reference)
-                for (const HeapSphere& p : one.spheres)
+                for (const BedSphere& p : one.spheres)
                     if (h.of.seed == 1 && std::abs(p.r.y) < h.of.d / 2)
                         spheres.rows.push_back(
                             {h.of.mu, h.of.mu_r, h.of.speed, h.of.E, seed, p.r.x, p.r.z, p.radius});

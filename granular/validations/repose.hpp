@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/validation.hpp"
 
 #include <functional>
@@ -28,12 +29,6 @@ struct Heap {
     double period() const { return length * d; }   ///< along y [m]
 };
 
-/// A sphere of a heap: a grain, or a part of one
-struct HeapSphere {
-    Vec3 r;
-    double radius;
-};
-
 /// The surface of a heap as a function of x, averaged over y
 struct HeapSurface {
     std::vector<double> x, z;  ///< [m]
@@ -41,7 +36,7 @@ struct HeapSurface {
 
 /// The surface of the spheres: the height of the highest point of any sphere over a point (x, y), on a grid
 /// of points at distances of about d/4, averaged over y. Points that no sphere covers have the height 0.
-HeapSurface surface_of(const std::vector<HeapSphere>& spheres, const Heap& heap);
+HeapSurface surface_of(const std::vector<BedSphere>& spheres, const Heap& heap);
 
 /// Angles of the two flanks against the horizontal [°], positive if the heap falls to its edges: of the
 /// straight line by least squares through the surface from 0.2 to 0.8 of the distance from the middle to the
@@ -56,8 +51,8 @@ FlankAngles flank_angles(const HeapSurface& surface, const Heap& heap);
 
 /// A heap at rest
 struct RestingHeap {
-    std::vector<HeapSphere> spheres;  ///< of the grains and of the plate
-    double grains = 0;                ///< number of grains on the plate
+    std::vector<BedSphere> spheres;  ///< of the grains and of the plate
+    double grains = 0;               ///< number of grains on the plate
     double balance = 0;  ///< mass on the plate and fallen off, less the initial one, over the latter
 };
 

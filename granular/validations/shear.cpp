@@ -13,6 +13,7 @@
 
 #include "granular/case/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"
 #include "io/message.hpp"
@@ -92,7 +93,7 @@ struct Box {
         return o;
     }
 
-    double of_grain() const { return glass().density * 4 * std::numbers::pi / 3 * std::pow(box.R, 3); }
+    double of_grain() const { return sphere_mass(box.R, glass().density); }
 
     /// A loose lattice with random displacements and velocities
     void fill()
@@ -122,7 +123,6 @@ struct Box {
     {
         granular::settle(world,
                          {.what = "the sample",
-                          .unit = static_cast<double>(world.count()) * of_grain() * g * box.R,
                           .interval = std::lround(0.01 / box.h),
                           .longest = longest_settling,
                           .energy = settled_energy},
@@ -133,10 +133,8 @@ struct Box {
     /// time, so that the lid does not rebound.
     void press(double mass, double time)
     {
-        double top = -box.lower;
-        for (const Particle& p : world.particles()) top = std::max(top, p.r.z + box.R);
         Boundary& b = world.boundary(lid);
-        b.r.z = top, b.mass = mass, b.free = {false, false, true};
+        b.r.z = highest_point(equal_spheres(world, box.R)), b.mass = mass, b.free = {false, false, true};
         constexpr int parts = 100;
         for (int k = 0; k < 2 * parts; ++k) {
             world.boundary(lid).F.z = mass * g * std::max(0., 1 - (k + 1.) / parts);
@@ -172,7 +170,7 @@ std::string settled_sample(const ShearBox& box, const ValidationOptions& options
                            const std::function<void(double)>& progress)
 {
     std::string bytes;
-    options.beds.bed(
+    options.bed(
         bed_case(box),
         [&] {
             Box now(box, options.device);
@@ -313,12 +311,8 @@ ValidationResult run(const ValidationOptions& options)
     for (auto& [mu, sample] : samples) {
         ShearBox box = all.front().box;
         box.mu = mu;
-        options.kept.part(
-            [&, &sample = sample] {
-                sample = settled_sample(box, options,
-                                        [&](double share) { options.progress((done + share) / parts); });
-            },
-            [&sample = sample](io::Archive& a) { a.list(sample); });
+        sample =
+            settled_sample(box, options, [&](double share) { options.progress((done + share) / parts); });
         options.progress(++done / parts);
     }
 

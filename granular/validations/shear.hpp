@@ -55,8 +55,8 @@ struct ShearRecord {
     struct Peak {
         double x = 0, tau = 0;
     };
-    /// Largest mean of the shear stress over a displacement of `window` [m], and the middle of the window; NaN
-    /// if one of the means is NaN
+    /// Largest mean of the shear stress over a displacement of `window` [m], and the middle of the window.
+    /// The mean is NaN if that of one window is.
     Peak peak(double window = 5e-4) const;
     /// Mean of a column over x in (from, to)
     double mean(const std::vector<double>& column, double from, double to) const;

@@ -77,6 +77,14 @@ struct ValidationOptions {
     ValidationProgress kept = {};  ///< of an interrupted validation
     SettledBeds beds = {};         ///< settled beds of earlier runs
 
+    /// A settled bed as a part of the validation. It is read from the results before an interruption or from
+    /// its file, or computed. `transfer` writes or reads the bed.
+    void bed(const BedCase& of, const SettledBeds::Compute& compute,
+             const SettledBeds::Transfer& transfer) const
+    {
+        kept.part([&] { beds.bed(of, compute, transfer); }, transfer);
+    }
+
     /// Adds the warnings of a run at its end.
     void include(const std::string& run, const World& world) const
     {
@@ -93,6 +101,9 @@ struct ValidationTable {
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
 };
+
+/// The other bound of a check with one bound
+inline constexpr double no_bound = 1e3;
 
 /// An acceptance criterion: a measured value and its bounds. NaN is not within any bounds.
 struct ValidationCheck {

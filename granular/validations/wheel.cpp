@@ -21,11 +21,13 @@
 
 #include "granular/case/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "io/message.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -48,9 +50,7 @@ PairLaw law(const WheelBed& bed, double friction, double mu_r)
     PairLaw l;
     l.normal = ScaledHooke{.k_n = k, .gamma_n = gamma};
     l.tangential = Mindlin{.spring = {.k_t = k, .c = 0, .gamma_t = gamma}, .cap = {bound, bound}};
-    // The lever arm R/2 is that of the author's results of Sec. 7.1.4.
-    if (mu_r > 0)
-        l.rolling = ConstantTorque{.mu_r = static_cast<float>(mu_r), .slow = 1e-4f, .half_radius = 1};
+    if (mu_r > 0) l.rolling = ConstantTorque::with_half_radius(mu_r);
     return l;
 }
 
@@ -118,8 +118,6 @@ struct Soil {
         return o;
     }
 
-    double of_grain() const { return rock().density * 4 * std::numbers::pi / 3 * std::pow(bed.R, 3); }
-
     /// A loose lattice with random displacements
     void fill()
     {
@@ -128,7 +126,7 @@ struct Soil {
         const int columns = static_cast<int>(across / (2.1 * R)) + 1,
                   rows = std::max(1, static_cast<int>(bed.width / (2.1 * R)));
         const auto count = static_cast<int>(
-            std::lround(packing * bed.length * bed.width * bed.depth * rock().density / of_grain()));
+            std::lround(packing * bed.length * bed.width * bed.depth / sphere_mass(bed.R, 1)));
         Random random(bed.seed);
         const auto in = [&](double most) { return random.number(-most, most); };
         for (int k = 0; k < count; ++k) {
@@ -147,7 +145,6 @@ struct Soil {
     {
         granular::settle(world,
                          {.what = "the bed",
-                          .unit = static_cast<double>(world.count()) * of_grain() * g * bed.R,
                           .interval = std::lround(0.02 / bed.h),
                           .longest = longest_settling,
                           .energy = settled_energy},
@@ -156,11 +153,11 @@ struct Soil {
 };
 
 /// Highest point of the bed within 2R of x
-double surface(const std::vector<Particle>& grains, double x, double R)
+double surface(const std::vector<BedSphere>& grains, double x, double R)
 {
     double highest = 0;
-    for (const Particle& p : grains)
-        if (std::abs(p.r.x - x) < 2 * R) highest = std::max(highest, p.r.z + R);
+    for (const BedSphere& s : grains)
+        if (std::abs(s.r.x - x) < 2 * R) highest = std::max(highest, s.r.z + R);
     return highest;
 }
 
@@ -188,7 +185,7 @@ std::vector<Vec3> settled_soil(const WheelBed& bed, const ValidationOptions& opt
                                const std::function<void(double)>& progress)
 {
     std::vector<Vec3> grains;
-    options.beds.bed(
+    options.bed(
         bed_case(bed),
         [&] {
             Soil now(bed, bed.settling_mu, settling_mu_r, options.device);
@@ -229,14 +226,12 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
         p.radius = bed.R, p.r = r;
         world.add(p);
     }
-    const std::vector<Particle> before = world.particles();
+    const std::vector<BedSphere> before = equal_spheres(world, bed.R);
     const double radius = radius_of(test.shape), v = omega * radius * (1 - test.slip),
                  scale = is_plane_strain(test.shape) ? wheel_width / bed.width : 1;
 
-    double lowest = 0;  // height of the axis where a cylinder touches the first grain
-    for (const Particle& p : before)
-        if (const double dx = std::abs(p.r.x - start_x), reach = radius + bed.R; dx < reach)
-            lowest = std::max(lowest, p.r.z + std::sqrt(reach * reach - dx * dx));
+    const double lowest =
+        first_contact(before, radius, [](const Vec3& r) { return std::abs(r.x - start_x); });
     const int number = now.add_wheel(test.shape, lowest, wheel_load / scale / g);
     world.step(std::lround(resting / bed.h));
     world.boundary(number).v.x = v, world.boundary(number).omega = {0, omega, 0};
@@ -313,6 +308,8 @@ struct Measured {
     double pull = 0, load = 0, torque = 0, sinkage = 0, power = 0, dissipated = 0;
 };
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
 /// Quantities of the tests with one wheel over the slip; NaN if one of the tests has failed
 struct OverSlip {
     double pull = infinite, torque = infinite;         ///< smallest increases to the next slip [N, N m]
@@ -334,12 +331,10 @@ struct OverSlip {
         }
         if (std::isnan(pull)) zero = pull;
     }
-    static constexpr double infinite = 1e300;
 };
 
 std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
 {
-    constexpr double none = 1e3, infinite = 1e300;
     const auto of = [&](WheelShape shape, bool rolls = true) {
         std::vector<Measured> some;
         for (const Measured& m : all)
@@ -360,18 +355,18 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
     const Measured rolling = at(cylinder, 0.3), sliding = at(of(WheelShape::cylinder, false), 0.3),
                    prism = at(of(WheelShape::prism), 0.3);
     std::vector<ValidationCheck> out = {
-        {"least increase of the pull to the next slip [N]", by_slip.pull, 0, none},
+        {"least increase of the pull to the next slip [N]", by_slip.pull, 0, no_bound},
         {"slip at which the pull changes its sign", by_slip.zero, -0.1, 0.3},
-        {"least increase of the torque to the next slip [N m]", by_slip.torque, 0, none},
+        {"least increase of the torque to the next slip [N m]", by_slip.torque, 0, no_bound},
         {"slip of the least sinkage", by_slip.least_sunk, -0.3, 0.3},
-        {"sinkage at slip 0.7 over the least", cylinder.back().sinkage / by_slip.sinkage, 1, none},
+        {"sinkage at slip 0.7 over the least", cylinder.back().sinkage / by_slip.sinkage, 1, no_bound},
         {"vertical load over the weight of the wheel - 1, largest", load, 0, 0.02},
-        {"least torque omega - pull v [W]", power, 0, none},
-        {"least dissipation of the contacts [W]", dissipated, 0, none},
+        {"least torque omega - pull v [W]", power, 0, no_bound},
+        {"least dissipation of the contacts [W]", dissipated, 0, no_bound},
         {"sinkage without rolling friction over that with, slip 0.3", sliding.sinkage / rolling.sinkage, 1,
-         none},
-        {"pull without rolling friction minus that with, slip 0.3 [N]", sliding.pull - rolling.pull, -none,
-         0},
+         no_bound},
+        {"pull without rolling friction minus that with, slip 0.3 [N]", sliding.pull - rolling.pull,
+         -no_bound, 0},
         {"torque of the mesh over that of the cylinder - 1, plane strain, slip 0.3",
          prism.torque / rolling.torque - 1, -0.1, 0.1}};
     for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre})
@@ -379,9 +374,9 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
             const OverSlip over_slip(mesh);
             const std::string name = wheel_shape_names[static_cast<int>(shape)];
             out.push_back(
-                {name + ": least increase of the pull to the next slip [N]", over_slip.pull, 0, none});
-            out.push_back(
-                {name + ": least increase of the torque to the next slip [N m]", over_slip.torque, 0, none});
+                {name + ": least increase of the pull to the next slip [N]", over_slip.pull, 0, no_bound});
+            out.push_back({name + ": least increase of the torque to the next slip [N m]", over_slip.torque,
+                           0, no_bound});
             if (shape == WheelShape::tyre)
                 out.push_back(
                     {name + ": slip at which the pull changes its sign", over_slip.zero, -0.1, 0.3});
@@ -413,13 +408,8 @@ ValidationResult run(const ValidationOptions& options)
         for (int n = 0; n < beds; ++n, ++test.bed.seed) {
             const auto [soil, is_new] = soils.try_emplace(bed_case(test.bed).hash());
             if (is_new)
-                options.kept.part(
-                    [&, &to = soil->second] {
-                        to = settled_soil(test.bed, options, [&](double share) {
-                            options.progress((done + share / 2) / parts);
-                        });
-                    },
-                    [&, &to = soil->second](io::Archive& a) { a.list(to); });
+                soil->second = settled_soil(
+                    test.bed, options, [&](double share) { options.progress((done + share / 2) / parts); });
             WheelRecord r;
             options.kept.part(
                 [&, &from = soil->second] { r = drive(test, from, options); },

@@ -38,11 +38,6 @@ inline double not_finite(std::initializer_list<Vec3> all)
     return 0;
 }
 
-inline double sphere_mass(double radius, double density)
-{
-    return 4.0 / 3 * M_PI * radius * radius * radius * density;
-}
-
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 inline bool finite(const Float4& a)
 {

@@ -149,10 +149,8 @@ World::StepLimits World::step_limits(double least_speed) const
     };
     each([&](const Particle& p) {
         const Material& m = materials[static_cast<std::size_t>(p.material)];
-        const double G = m.E / (2 * (1 + m.nu));
         if (p.fixed) return;
-        limits.rayleigh =
-            std::min(limits.rayleigh, M_PI * p.radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766));
+        limits.rayleigh = std::min(limits.rayleigh, rayleigh_time(p.radius, m));
         add_collision(p.mass / 2, p.radius / 2);  // of two equal particles
         for (const Boundary& b : boundaries)      // of a bowl or tube that is little larger than the particle
             if (b.inside != 0 && b.radius > p.radius && b.radius < 2 * p.radius)

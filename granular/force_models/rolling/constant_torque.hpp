@@ -28,6 +28,12 @@ struct ConstantTorque {
     float after = 0;      ///< age of the contact from which the torque acts [s]
     int half_radius = 0;  ///< 1: lever arm R/2 instead of R*
 
+    /// The law with the lever arm R/2 of the dissertation, with which the results of Sec. 7.1.4 agree
+    static ConstantTorque with_half_radius(double mu_r, double slow = 1e-4)
+    {
+        return {.mu_r = static_cast<float>(mu_r), .slow = static_cast<float>(slow), .half_radius = 1};
+    }
+
     template <class R>
     HILDA_HD Vec<R> operator()(const ContactPoint<R>& contact, const NormalForce<R>& normal, R,
                                History<R>& history) const

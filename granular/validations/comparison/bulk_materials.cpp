@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/validations/comparison/bulk_materials.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 namespace hilda::granular {
 
@@ -47,9 +44,7 @@ void set_bulk_laws(World& world, const BulkScale& scale)
 
 double bulk_step(double radius, BulkMaterial material, const BulkScale& scale)
 {
-    const Material m = bulk_materials(scale)[static_cast<std::size_t>(material)];
-    const double G = m.E / (2 * (1 + m.nu));
-    return 0.16 * std::numbers::pi * radius * std::sqrt(m.density / G) / (0.1631 * m.nu + 0.8766);
+    return 0.16 * rayleigh_time(radius, bulk_materials(scale)[static_cast<std::size_t>(material)]);
 }
 
 std::vector<Particle> loose_layers(const Particle& grain, long count, double low, double half,
@@ -68,13 +63,6 @@ std::vector<Particle> loose_layers(const Particle& grain, long count, double low
                 if (inside(p.r)) all.push_back(p);
             }
     return all;
-}
-
-double highest_point(const std::vector<Particle>& particles)
-{
-    double z = -std::numeric_limits<double>::infinity();
-    for (const Particle& p : particles) z = std::max(z, p.r.z + p.radius);
-    return z;
 }
 
 }  // namespace hilda::granular

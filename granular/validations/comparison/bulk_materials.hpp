@@ -15,6 +15,7 @@
 #pragma once
 
 #include "granular/case/split_mix.hpp"
+#include "granular/validations/bed_geometry.hpp"
 #include "granular/world/world.hpp"
 
 #include <functional>
@@ -46,8 +47,5 @@ double bulk_step(double radius, BulkMaterial material, const BulkScale& scale);
 /// to `half`.
 std::vector<Particle> loose_layers(const Particle& grain, long count, double low, double half,
                                    const std::function<bool(const Vec3&)>& inside, Random& random);
-
-/// Height of the highest point of all particles [m]
-double highest_point(const std::vector<Particle>& particles);
 
 }  // namespace hilda::granular

@@ -57,12 +57,8 @@ struct DrumWorld {
 
     void settle(double h, const std::function<void(double)>& progress)
     {
-        world.step(0);
-        double unit = 0;
-        world.each_particle([&](const Particle& p) { unit += p.mass * g * p.radius; });
         granular::settle(world,
                          {.what = "the filling of the drum",
-                          .unit = unit,
                           .interval = std::lround(0.01 / h),
                           .longest = 3,
                           .energy = 1e-2},

@@ -41,12 +41,6 @@ Particle grain(const Penetration& test)
     return p;
 }
 
-double surface_of(std::vector<Vec3> centres, double R)
-{
-    std::sort(centres.begin(), centres.end(), [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
-    return centres[centres.size() * 98 / 100].z + R;
-}
-
 }  // namespace
 
 std::vector<Vec3> penetration_bed(const Penetration& test, const ValidationOptions& options,
@@ -62,13 +56,7 @@ std::vector<Vec3> penetration_bed(const Penetration& test, const ValidationOptio
     const std::vector<Particle> start = loose_layers(grain(test), test.number(), 0, half_x, inside, random);
     World world = box(soft, highest_point(start) + R, options.device);
     for (const Particle& p : start) world.add(p);
-    world.step(0);
-    settle(world,
-           {.what = "the bed",
-            .unit = static_cast<double>(start.size()) * world.particles().front().mass * g * R,
-            .interval = std::lround(0.01 / h),
-            .longest = 3,
-            .energy = 1e-2},
+    settle(world, {.what = "the bed", .interval = std::lround(0.01 / h), .longest = 3, .energy = 1e-2},
            progress);
     std::vector<Vec3> centres;
     for (const Particle& p : world.particles()) centres.push_back(p.r);
@@ -112,7 +100,7 @@ BallMotion ball_motion(const Penetration& test, const std::vector<Vec3>& bed,
     const long interval = std::lround(test.sample / bulk_step(test.radius(), M1, test.scale)),
                samples = std::lround(test.time / test.sample);
     BallMotion out;
-    out.surface = surface_of(bed, test.radius());
+    out.surface = height_of_98_percent(equal_spheres(bed, test.radius())) + test.radius();
     for (long k = 0; k <= samples; ++k) {
         world.step(k > 0 ? interval : 0);
         world.each_particle([&](const Particle& now) {
@@ -182,7 +170,7 @@ ValidationResult run(const ValidationOptions& options)
         lowest = min_or_nan(lowest, m.z[stop] / BallMotion::radius);
         depths.push_back(m.depth());
     }
-    const double d = 2 * all.front().radius(), no_bound = 1e3;
+    const double d = 2 * all.front().radius();
     return {
         {table, motion},
         {{"largest error of the free fall before the contact [m]", fall, 0, 2e-6},

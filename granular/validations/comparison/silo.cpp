@@ -55,12 +55,10 @@ struct SiloWorld {
         return o;
     }
 
-    void settle(double R, double h, const std::function<void(double)>& progress)
+    void settle(double h, const std::function<void(double)>& progress)
     {
-        const double weight = static_cast<double>(world.count()) * world.particles().front().mass * g;
         granular::settle(world,
                          {.what = "the filling of the silo",
-                          .unit = weight * R,
                           .interval = std::lround(0.01 / h),
                           .longest = 3,
                           .energy = 1e-2},
@@ -122,7 +120,7 @@ SiloFlow silo_flow(const Silo& silo, const ValidationOptions& options,
     SiloWorld now(silo, loose_grains(silo), options.device);
     World& world = now.world;
     const auto initial = static_cast<double>(world.count());
-    now.settle(silo.radius(), silo.h(), [&](double share) { progress(0.3 * share); });
+    now.settle(silo.h(), [&](double share) { progress(0.3 * share); });
     now.open();
     const double start = world.t();
     const long interval = std::lround(silo.sample / silo.h()), samples = std::lround(silo.time / silo.sample);
@@ -173,8 +171,8 @@ ValidationResult run(const ValidationOptions& options)
             [&](io::Archive& a) { a.list(f.t), a.list(f.retained), a.value(f.balance); });
         options.progress(++done / parts);
         const double R = s.radius(),
-                     mass = bulk_materials(s.scale)[static_cast<std::size_t>(s.material)].density * 4 *
-                            std::numbers::pi / 3 * R * R * R;
+                     mass = sphere_mass(
+                         R, bulk_materials(s.scale)[static_cast<std::size_t>(s.material)].density);
         const std::string name = s.material == M1 ? "M1" : "M2";
         rates.push_back(f.rate());
         table.rows.push_back({s.orifice, name, 2 * R, f.retained.front(), s.scale.softness, f.rate(),

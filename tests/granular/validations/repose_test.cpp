@@ -43,7 +43,7 @@ TEST_CASE("the higher of two spheres is the surface, and a sphere beyond the pla
           "[granular][repose]")
 {
     const Heap heap{.d = 0.01, .width = 10, .length = 4};
-    const HeapSphere low{{0, 0, 0}, 0.01}, high{{0, 0, 0.05}, 0.01};
+    const BedSphere low{{0, 0, 0}, 0.01}, high{{0, 0, 0.05}, 0.01};
     CHECK(surface_of({low, high}, heap).z == surface_of({high, low}, heap).z);
     CHECK(surface_of({low, high}, heap).z == surface_of({high}, heap).z);
     const double whole = area(surface_of({low}, heap));
@@ -86,7 +86,7 @@ TEST_CASE("a heap is the same for any number of threads, and friction makes it s
     }
     CHECK(std::abs(one.balance) < 1e-12);
     CHECK(one.grains > 100);
-    for (const HeapSphere& s : one.spheres) CHECK(std::abs(s.r.x) < heap.edge() + heap.d);
+    for (const BedSphere& s : one.spheres) CHECK(std::abs(s.r.x) < heap.edge() + heap.d);
 
     const double steep = flank_angles(surface_of(one.spheres, heap), heap).mean();
     heap.mu = 0.05, heap.mu_r = 0;

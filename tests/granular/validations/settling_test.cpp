@@ -28,14 +28,7 @@ World falling()
     return world;
 }
 
-Settling settling(const World& world)
-{
-    return {.what = "the grain",
-            .unit = world.particles().front().mass * 9.81 * 5e-3,
-            .interval = 100,
-            .longest = 1,
-            .energy = 1e-4};
-}
+const Settling settling{.what = "the grain", .interval = 100, .longest = 1, .energy = 1e-4};
 
 }  // namespace
 
@@ -43,11 +36,11 @@ TEST_CASE("grains settle for the shortest time after the call, not after the sta
           "[granular][settling]")
 {
     World world = falling();
-    settle(world, settling(world), [](double) {});
+    settle(world, settling, [](double) {});
     CHECK(world.t() > 0.1);
     const double first = world.t();
     CHECK(world.particles().front().r.z == Approx(5e-3).epsilon(0.01));
-    Settling again = settling(world);
+    Settling again = settling;
     again.shortest = 0.05;
     double share = 0;
     settle(world, again, [&](double now) { share = now; });  // the grain is at rest
@@ -59,9 +52,9 @@ TEST_CASE("grains settle for the shortest time after the call, not after the sta
 TEST_CASE("the longest time of settling counts from the call", "[granular][settling]")
 {
     World world = falling();
-    settle(world, settling(world), [](double) {});
+    settle(world, settling, [](double) {});
     const double first = world.t();
-    Settling of = settling(world);
+    Settling of = settling;
     of.longest = 0.15, of.energy = 0;
     double share = 0;
     CHECK_THROWS_AS(settle(world, of, [&](double now) { share = now; }), io::NumericalFailure);

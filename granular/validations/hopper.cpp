@@ -168,7 +168,7 @@ ValidationResult run(const ValidationOptions& options)
     const double height = height_of_98_percent(bed),
                  density = bulk_density(bed, height, std::numbers::pi * wall * wall, glass().density);
     ValidationTable study{
-        "study", {"bed", "D", "W", "steady", "left", "balance", "height", "bulk_density"}, {}},
+        "study", {"bed", "D", "W", "steady", "left", "balance", "height", "bulk_density", "C", "k"}, {}},
         motion{"motion", {"bed", "D", "t", "left"}, {}};
     double balance = 0, unsteady = 0;
     const auto add = [&](const std::string& name, double outlet, const Flow& f, double of_height) {
@@ -195,6 +195,7 @@ ValidationResult run(const ValidationOptions& options)
     add("lower", of_checks, low, 0.7 * height), add("refilled", of_checks, refilled, height);
     const StraightLine line(x, y);
     const double C = std::pow(line.b, 2.5) / (density * std::sqrt(g)), k = -line.a / line.b / d;
+    for (auto& row : study.rows) row.insert(row.end(), {C, k});
     ValidationResult result;
     result.tables = {study, motion};
     result.checks = {

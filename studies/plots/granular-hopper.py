@@ -8,16 +8,15 @@ import numpy as np
 
 from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, where
 
-DIAMETER, GRAVITY, BEGIN, END = 4e-3, 9.81, 0.15, 0.5
+DIAMETER, GRAVITY = 4e-3, 9.81  # mean diameter of the grains [m], [m/s²]
+BEGIN, END = 0.15, 0.5          # the flow is that of this time [s]
 
 
 def draw(folder):
     rows, motion = read(folder, "study.csv"), read(folder, "motion.csv")
     whole = where(rows, bed="whole")
     outlets, flow = np.array(numbers(whole, "D")), np.array(numbers(whole, "W"))
-    density = number(rows[0]["bulk_density"])
-    slope, shift = np.polyfit(outlets, flow ** 0.4, 1)
-    C, k = slope ** 2.5 / (density * GRAVITY ** 0.5), -shift / slope / DIAMETER
+    density, C, k = (number(rows[0][column]) for column in ("bulk_density", "C", "k"))
 
     def law(D):
         return C * density * GRAVITY ** 0.5 * (D - k * DIAMETER) ** 2.5

@@ -10,6 +10,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.collections import PatchCollection
 from matplotlib.lines import Line2D
 
 import options
@@ -105,6 +106,20 @@ def number(text):
 def numbers(rows, column):
     """The numbers of a column"""
     return [number(row[column]) for row in rows]
+
+
+def spheres(axes, places, radius=None, values=None, most=1, **look):
+    """Draws circles in the plane of x and z [mm] and returns the collection. `places`: rows with x, z and, if `radius` is
+    None, radius [m]. `values` colours them from 0 to `most`; the largest values are drawn last."""
+    order = sorted(range(len(places)), key=lambda k: values[k]) if values else range(len(places))
+    circles = [plt.Circle((1000 * number(places[k]["x"]), 1000 * number(places[k]["z"])),
+                          1000 * (number(places[k]["radius"]) if radius is None else radius)) for k in order]
+    drawn = PatchCollection(circles, **({"cmap": "viridis"} if values else {}), **look)
+    if values:
+        drawn.set_array([values[k] for k in order])
+        drawn.set_clim(0, most)
+    axes.add_collection(drawn)
+    return drawn
 
 
 def grid(axes):

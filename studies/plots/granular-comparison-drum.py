@@ -7,7 +7,7 @@
 """
 import numpy as np
 
-from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, spheres, where
 
 RADIUS = 100  # of the drum [mm]
 
@@ -15,9 +15,7 @@ RADIUS = 100  # of the drum [mm]
 def picture(axes, grains, title):
     """The grains of the middle slice, M1 and M2 in two colours [mm]"""
     for material, colour in (("M2", COLOURS[0]), ("M1", COLOURS[1])):
-        for p in where(grains, material=material):
-            axes.add_patch(plt.Circle((1000 * number(p["x"]), 1000 * number(p["z"])), 1000 * number(p["radius"]),
-                                      facecolor=colour, edgecolor="white", lw=0.2))
+        spheres(axes, where(grains, material=material), facecolor=colour, edgecolor="white", linewidths=0.2)
         axes.plot([], [], "o", color=colour, ms=5, label=material)
     axes.legend(frameon=False, fontsize=8, ncol=2, loc="upper center", borderaxespad=1.5)
     axes.add_patch(plt.Circle((0, 0), RADIUS, fill=False, color="0.3", lw=1.2))

@@ -6,9 +6,7 @@
 """
 import math
 
-from matplotlib.collections import PatchCollection
-
-from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, spheres, where
 
 DRUM = 30  # radius of the circle of the centres of the shell [mm]
 
@@ -16,11 +14,7 @@ DRUM = 30  # radius of the circle of the centres of the shell [mm]
 def picture(axes, row, grains, surface):
     """The grains of the middle slice, coloured by their speed over that of the shell"""
     radius = 1000 * number(row["R"])
-    circles = [plt.Circle((1000 * number(p["x"]), 1000 * number(p["z"])), radius) for p in grains]
-    drawn = PatchCollection(circles, cmap="viridis", linewidths=0)
-    drawn.set_array(numbers(grains, "speed"))
-    drawn.set_clim(0, 1.5)
-    axes.add_collection(drawn)
+    drawn = spheres(axes, grains, number(row["R"]), numbers(grains, "speed"), 1.5, linewidths=0)
     axes.add_patch(plt.Circle((0, 0), DRUM - radius, fill=False, color="0.3", lw=1.2))
     if number(row["froude"]) < 0.2:
         axes.plot([1000 * x for x in numbers(surface, "x")], [1000 * z for z in numbers(surface, "z")], "-", color=COLOURS[1],

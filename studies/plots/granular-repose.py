@@ -9,17 +9,14 @@ import math
 
 import numpy as np
 
-from matplotlib.collections import PatchCollection
-
-from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, directory, grid, number, numbers, plt, read, save, spheres, where
 
 FROM, TO = 0.2, 0.8  # part of a flank that the line is fitted to
 
 
-def picture(axes, row, heap, spheres, surface):
+def picture(axes, row, heap, grains, surface):
     """The grains of a slice of one heap, its surface and the lines through its flanks [mm]"""
-    circles = [plt.Circle((1000 * number(p["x"]), 1000 * number(p["z"])), 1000 * number(p["radius"])) for p in spheres]
-    axes.add_collection(PatchCollection(circles, facecolor="0.8", edgecolor="0.5", linewidths=0.3))
+    spheres(axes, grains, facecolor="0.8", edgecolor="0.5", linewidths=0.3)
     x, z = 1000 * np.array(numbers(surface, "x")), 1000 * np.array(numbers(surface, "z"))
     axes.plot(x, z, "-", color=COLOURS[0], lw=1.2)
     edge = -x[0] + (x[1] - x[0]) / 2
@@ -35,7 +32,7 @@ def picture(axes, row, heap, spheres, surface):
 
 def draw(folder):
     every, heaps = read(folder, "study.csv"), read(folder, "heaps.csv")
-    surface, spheres = read(folder, "surface.csv"), read(folder, "spheres.csv")
+    surface, slices = read(folder, "surface.csv"), read(folder, "spheres.csv")
     rows = where(every, speed=every[0]["speed"], E=every[0]["E"])
     mu_r = rows[0]["mu_r"]
     over_mu = where(rows, mu_r=mu_r)
@@ -47,7 +44,7 @@ def draw(folder):
     for k, row in enumerate((over_mu[0], where(over_mu, mu=mu)[0])):
         axes = figure.add_subplot(panels[0, 3 * k:3 * (k + 1)])
         mine = {"mu": row["mu"], "mu_r": mu_r, "speed": row["speed"], "E": row["E"], "seed": "1"}
-        picture(axes, row, where(heaps, **mine)[0], where(spheres, **mine), where(surface, **mine))
+        picture(axes, row, where(heaps, **mine)[0], where(slices, **mine), where(surface, **mine))
 
     profile, first, second = (figure.add_subplot(panels[1, 2 * k:2 * (k + 1)]) for k in range(3))
     for n, row in enumerate(over_mu + [r for r in over_mu_r if r["mu_r"] != mu_r]):

@@ -4,12 +4,10 @@
 
     granular-wheel.py DIR     reads DIR/study.csv, DIR/motion.csv and DIR/grains.csv, writes DIR/granular-wheel.png
 """
-from matplotlib.collections import PatchCollection
-
-from drawing import COLOURS, directory, distinct, grid, number, numbers, plt, read, save, where
+from drawing import COLOURS, directory, distinct, grid, number, numbers, plt, read, save, spheres, where
 
 OMEGA = 0.2967  # [rad/s]
-RADIUS = {"cylinder": 130, "prism": 130, "cylinder with ends": 130, "tyre": 305}  # [mm]
+RADIUS, GRAIN = 0.13, 7.5e-3  # of the cylinder and of the grains [m]
 QUANTITIES = [("pull", 1, "drawbar pull [N]"), ("torque", 1, "driving torque [N m]"), ("sinkage", 1000, "sinkage [mm]")]
 
 
@@ -25,16 +23,11 @@ def over_slip(axes, rows, column, factor, label):
 
 
 def picture(axes, row, grains):
-    """The grains at the end, coloured by their speed over that of the rim, with the wheel"""
-    radius, wheel = 7.5, RADIUS[row["wheel"]]  # of the grains [mm]
-    places = sorted(grains, key=lambda p: number(p["speed"]))
-    drawn = PatchCollection([plt.Circle((1000 * number(p["x"]), 1000 * number(p["z"])), radius) for p in places],
-                            cmap="viridis", linewidths=0.2, edgecolors="0.3")
-    drawn.set_array([number(p["speed"]) / (OMEGA * wheel / 1000) for p in places])
-    drawn.set_clim(0, 1)
-    axes.add_collection(drawn)
+    """The grains at the end, coloured by their speed over that of the rim, with the cylinder"""
+    drawn = spheres(axes, grains, GRAIN, [speed / (OMEGA * RADIUS) for speed in numbers(grains, "speed")], linewidths=0.2,
+                    edgecolors="0.3")
     centre = (1000 * number(grains[0]["wheel_x"]), 1000 * number(grains[0]["wheel_z"]))
-    axes.add_patch(plt.Circle(centre, wheel, fill=False, color="k", lw=1.5))
+    axes.add_patch(plt.Circle(centre, 1000 * RADIUS, fill=False, color="k", lw=1.5))
     axes.annotate("", xy=(centre[0] + 70, centre[1]), xytext=centre, arrowprops={"arrowstyle": "->", "color": "k"})
     axes.set(xlim=(0, 700), ylim=(0, 280), aspect="equal", xlabel="x [mm]", title=f"slip {number(row['slip']):g}")
     return drawn

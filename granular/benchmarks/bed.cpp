@@ -237,50 +237,8 @@ void report_mesh(const char* phase, std::vector<World>& worlds, long first)
     std::fflush(stdout);
 }
 
-}  // namespace
-
-int main(int argc, char** argv)
-try {
-    if (argc == 3 && std::strcmp(argv[1], "watch") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
-        omp_set_num_threads(1);
-        World world = bed(std::strtoul(argv[2], nullptr, 10), {});
-        std::printf(
-            "          CPU time of a step [us], watch    median of\n"
-            "particles phase       without       with     ratios\n");
-        report_watch("falling", world, 20);
-        report_watch("at rest", world, std::lround(0.25 / h));
-        return 0;
-    }
-    if (argc == 3 && std::strcmp(argv[1], "rows") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
-        omp_set_num_threads(1);
-        World world = bed(std::strtoul(argv[2], nullptr, 10), {});
-        std::printf(
-            "                       step  parts of a row, in steps\n"
-            "particles phase        [us]    totals    energy    sample       all\n");
-        report_row("falling", world, 20);
-        report_row("at rest", world, std::lround(0.1 / h));
-        return 0;
-    }
-    if (argc == 3 && std::strcmp(argv[1], "mesh") == 0 && std::strtoul(argv[2], nullptr, 10) > 0) {
-        omp_set_num_threads(1);
-        std::vector<World> worlds;
-        for (const Container in : {Container::planes, Container::triangles, Container::terrain})
-            worlds.push_back(bed(std::strtoul(argv[2], nullptr, 10), {}, in));
-        std::printf(
-            "                   step with    box of triangles    terrain below\n"
-            "particles phase    planes [us]    number  ratio    number  ratio\n");
-        report_mesh("falling", worlds, 20);
-        report_mesh("at rest", worlds, std::lround(0.25 / h));
-        return 0;
-    }
-    const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10000;
-    const bool gpu = argc > 2 && std::strcmp(argv[2], "cuda") == 0;
-    if (n < 1 || (argc > 2 && !gpu)) {
-        std::fprintf(stderr,
-                     "usage: hilda_granular_benchmark [PARTICLES [cuda]] | watch PARTICLES | rows PARTICLES "
-                     "| mesh PARTICLES\n");
-        return 2;
-    }
+void steps_benchmark(std::size_t n, bool gpu)
+{
     World world = bed(n, {.kind = gpu ? Device::cuda : Device::cpu});
     std::printf(
         "                          million  ns per particle-step in             pairs  contacts bytes\n"
@@ -297,6 +255,80 @@ try {
     world.step(std::lround(settled / h));
     report_all("at rest", 1000);
     report_memory(world, 200);
+}
+
+void watch_benchmark(std::size_t n)
+{
+    World world = bed(n, {});
+    std::printf(
+        "          CPU time of a step [us], watch    median of\n"
+        "particles phase       without       with     ratios\n");
+    report_watch("falling", world, 20);
+    report_watch("at rest", world, std::lround(0.25 / h));
+}
+
+void rows_benchmark(std::size_t n)
+{
+    World world = bed(n, {});
+    std::printf(
+        "                       step  parts of a row, in steps\n"
+        "particles phase        [us]    totals    energy    sample       all\n");
+    report_row("falling", world, 20);
+    report_row("at rest", world, std::lround(0.1 / h));
+}
+
+void mesh_benchmark(std::size_t n)
+{
+    std::vector<World> worlds;
+    for (const Container in : {Container::planes, Container::triangles, Container::terrain})
+        worlds.push_back(bed(n, {}, in));
+    std::printf(
+        "                   step with    box of triangles    terrain below\n"
+        "particles phase    planes [us]    number  ratio    number  ratio\n");
+    report_mesh("falling", worlds, 20);
+    report_mesh("at rest", worlds, std::lround(0.25 / h));
+}
+
+/// The benchmarks with a name, on one thread
+struct NamedBenchmark {
+    const char* name;
+    void (*run)(std::size_t particles);
+};
+constexpr NamedBenchmark benchmarks[] = {
+    {"watch", watch_benchmark}, {"rows", rows_benchmark}, {"mesh", mesh_benchmark}};
+
+/// A number of particles; 0 if the text is not one
+std::size_t number_of_particles(const char* text)
+{
+    char* end = nullptr;
+    const unsigned long n = std::strtoul(text, &end, 10);
+    return *text >= '0' && *text <= '9' && *end == 0 ? n : 0;
+}
+
+int usage()
+{
+    std::fprintf(stderr, "usage: hilda_granular_benchmark [PARTICLES [cuda]]");
+    for (const NamedBenchmark& b : benchmarks) std::fprintf(stderr, " | %s PARTICLES", b.name);
+    std::fprintf(stderr, "\n");
+    return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+try {
+    for (const NamedBenchmark& b : benchmarks) {
+        if (argc < 2 || std::strcmp(argv[1], b.name) != 0) continue;
+        const std::size_t n = argc == 3 ? number_of_particles(argv[2]) : 0;
+        if (n == 0) return usage();
+        omp_set_num_threads(1);
+        b.run(n);
+        return 0;
+    }
+    const std::size_t n = argc > 1 ? number_of_particles(argv[1]) : 10000;
+    const bool gpu = argc == 3 && std::strcmp(argv[2], "cuda") == 0;
+    if (n == 0 || argc > 3 || (argc == 3 && !gpu)) return usage();
+    steps_benchmark(n, gpu);
 } catch (const std::exception& e) {
     std::fprintf(stderr, "hilda_granular_benchmark: %s\n", e.what());
     return 1;

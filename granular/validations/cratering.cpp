@@ -175,7 +175,7 @@ Crater impact(const Impact& of, const SettledBed& bed, const ValidationOptions& 
     while (true) {
         const Boundary& b = world.all_boundaries()[static_cast<std::size_t>(now.ball)];
         out.time = world.t() - begin, out.depth = bed.surface - (b.r.z - r);
-        out.motion.insert(out.motion.end(), {out.time, out.depth, -b.v.z});
+        out.motion.push_back({out.time, out.depth, -b.v.z});
         if (out.time > 0 && -b.v.z < rest_speed) break;
         if (out.time > longest_impact)
             throw io::NumericalFailure(
@@ -238,9 +238,8 @@ ValidationResult run(const ValidationOptions& options)
                      slope = c.depth * mu / scale;
         table.rows.push_back(
             {of.R, of.density, of.height, c.depth, c.time, H, scale, slope, bed.density, bed.surface});
-        for (std::size_t k = 0; k + 2 < c.motion.size(); k += 3)
-            motion.rows.push_back(
-                {of.R, of.density, of.height, c.motion[k], c.motion[k + 1], c.motion[k + 2]});
+        for (const Crater::Sample& s : c.motion)
+            motion.rows.push_back({of.R, of.density, of.height, s.t, s.depth, s.speed});
         if (of.density == 2200 && of.height == 0.1) slope_of_size[of.R] = slope;
         if (of.R != R) continue;
         slopes.push_back(slope);

@@ -31,9 +31,13 @@ struct Impact {
 };
 
 struct Crater {
-    double depth = 0,
-           time = 0;  ///< of the lowest point of the ball below the surface when it is at rest [m, s]
-    std::vector<double> motion;  ///< t, depth, downward speed of each output row [s, m, m/s]
+    double depth = 0;  ///< of the lowest point of the ball below the surface when it is at rest [m]
+    double time = 0;   ///< from the first contact until then [s]
+    struct Sample {
+        double t, depth, speed;  ///< speed downward [s, m, m/s]
+        bool operator==(const Sample&) const = default;
+    };
+    std::vector<Sample> motion;
 };
 
 /// The impact on a bed of the same R. Throws io::NumericalFailure if the ball does not come to rest.

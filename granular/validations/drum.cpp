@@ -297,8 +297,7 @@ DrumFlow flow(const DrumRun& run, const std::vector<Vec3>& centres, const Valida
     DrumFlow out = sums.result();
     for (const Particle& p : before) {
         out.centres.push_back(p.r);
-        if (std::abs(p.r.y) < d.R)
-            out.grain.insert(out.grain.end(), {p.r.x, p.r.z, p.v.norm() / (omega * d.radius)});
+        if (std::abs(p.r.y) < d.R) out.slice.push_back({p.r.x, p.r.z, p.v.norm() / (omega * d.radius)});
     }
     options.include(io::formatted("Fr = %g, g = %g m/s^2, E = %g Pa", run.froude, d.g, d.E), world);
     return out;
@@ -306,17 +305,18 @@ DrumFlow flow(const DrumRun& run, const std::vector<Vec3>& centres, const Valida
 
 namespace {
 
-struct NamedRun {
+/// A run, in units in which ω is an integer multiple of that with g = 9.81 m/s²
+struct ScaledRun {
     DrumRun of;
     int scale = 1;  ///< ω over that of g = 9.81 m/s²
 };
 
 /// Runs by the Froude number; then one with four times the gravity and E, and twice ω
-std::vector<NamedRun> runs(bool full)
+std::vector<ScaledRun> runs(bool full)
 {
     Drum d;
     if (!full) d.R = 1e-3, d.width = 6e-3, d.h *= 2;
-    std::vector<NamedRun> all;
+    std::vector<ScaledRun> all;
     const auto add = [&](double froude, double turns, double averaged) {
         all.push_back({{d, froude, turns, averaged}});
     };
@@ -334,7 +334,7 @@ std::vector<NamedRun> runs(bool full)
 }
 
 struct Measured {
-    NamedRun run;
+    ScaledRun run;
     DrumFlow flow;
 };
 
@@ -392,7 +392,7 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
 
 ValidationResult run(const ValidationOptions& options)
 {
-    const std::vector<NamedRun> all = runs(options.full);
+    const std::vector<ScaledRun> all = runs(options.full);
     if (options.full)
         options.announce(
             io::formatted("%zu runs with 1.1e10 particle-steps, about 15 minutes of CPU time in the "
@@ -409,12 +409,12 @@ ValidationResult run(const ValidationOptions& options)
         surface{"surface", {"froude", "g", "x", "z"}, {}},
         slice{"grains", {"froude", "g", "x", "z", "speed"}, {}};
     std::vector<Measured> measured;
-    for (const NamedRun& r : all) {
+    for (const ScaledRun& r : all) {
         DrumFlow f;
         options.kept.part([&] { f = flow(r.of, grains, options); },
                           [&](io::Archive& a) {
                               a.value(f.angle), a.value(f.lean), a.value(f.airborne), a.value(f.covered);
-                              a.list(f.x), a.list(f.surface), a.list(f.grain), a.list(f.centres);
+                              a.list(f.x), a.list(f.surface), a.list(f.slice), a.list(f.centres);
                           });
         options.progress(++done / parts);
         const double Fr = r.of.froude, g = r.of.drum.g;
@@ -422,8 +422,7 @@ ValidationResult run(const ValidationOptions& options)
             {Fr, g, r.of.omega(), r.of.drum.R, r.of.turns, f.angle, f.lean, f.airborne, f.covered});
         for (std::size_t k = 0; k < f.x.size(); ++k)
             if (std::isfinite(f.surface[k])) surface.rows.push_back({Fr, g, f.x[k], f.surface[k]});
-        for (std::size_t k = 0; k + 2 < f.grain.size(); k += 3)
-            slice.rows.push_back({Fr, g, f.grain[k], f.grain[k + 1], f.grain[k + 2]});
+        for (const DrumFlow::SliceGrain& p : f.slice) slice.rows.push_back({Fr, g, p.x, p.z, p.speed});
         measured.push_back({r, f});
     }
     return {{table, surface, slice}, checks(measured)};

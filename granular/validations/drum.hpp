@@ -45,8 +45,11 @@ struct DrumFlow {
     double airborne = 0;  ///< share of the grains that fall freely
     double covered = 0;   ///< share of the rim with grains that move with the shell: least of all samples
     std::vector<double> x, surface;  ///< of each column: its middle, height of the surface; NaN: none [m]
-    std::vector<double> grain;       ///< x, z, |v|/(ω radius) of grains in the middle slice at the end
-    std::vector<Vec3> centres;       ///< of all grains at the end
+    struct SliceGrain {
+        double x, z, speed;  ///< [m, m, ω radius]
+    };
+    std::vector<SliceGrain> slice;  ///< grains in the middle slice at the end
+    std::vector<Vec3> centres;      ///< of all grains at the end
 };
 
 /// The flow of the settled grains of the same drum.

@@ -67,7 +67,7 @@ TriangleMesh wheel_mesh(WheelShape shape, const WheelBed& bed)
         const double beyond = bed.width / 2 + 2 * bed.R;
         return lathe_mesh({{radius, beyond}, {radius, -beyond}}, 96);
     }
-    if (shape == WheelShape::ends)
+    if (shape == WheelShape::closed_cylinder)
         return lathe_mesh({{0, half}, {radius, half}, {radius, -half}, {0, -half}}, 96);
     std::vector<std::array<double, 2>> profile;
     constexpr int around = 24;
@@ -162,6 +162,20 @@ double surface(const std::vector<BedSphere>& grains, double x, double R)
 }
 
 }  // namespace
+
+const char* name_of(WheelShape shape)
+{
+    switch (shape) {
+        case WheelShape::prism:
+            return "prism";
+        case WheelShape::closed_cylinder:
+            return "cylinder with ends";
+        case WheelShape::tyre:
+            return "tyre";
+        default:
+            return "cylinder";
+    }
+}
 
 BedCase bed_case(const WheelBed& bed)
 {
@@ -264,9 +278,8 @@ WheelRecord drive(const WheelTest& test, const std::vector<Vec3>& soil, const Va
     out.dissipated = scale * (world.watch().dissipated - dissipated) / (end_of(rows - 1) - out.from);
     const Boundary& wheel = world.all_boundaries()[static_cast<std::size_t>(number)];
     out.wheel_x = wheel.r.x, out.wheel_z = wheel.r.z;
-    for (const Particle& p : world.particles()) out.grain.insert(out.grain.end(), {p.r.x, p.r.z, p.v.norm()});
-    options.include(io::formatted("%s, slip %g, mu_r = %g", wheel_shape_names[static_cast<int>(test.shape)],
-                                  test.slip, test.mu_r),
+    for (const Particle& p : world.particles()) out.grains.push_back({p.r.x, p.r.z, p.v.norm()});
+    options.include(io::formatted("%s, slip %g, mu_r = %g", name_of(test.shape), test.slip, test.mu_r),
                     world);
     return out;
 }
@@ -295,7 +308,7 @@ std::vector<TestOnBeds> tests(bool full)
     test.mu_r = WheelTest{}.mu_r, test.shape = WheelShape::prism;
     add({0.3});
     if (full) {
-        test.shape = WheelShape::ends, test.bed.width = 0.32;
+        test.shape = WheelShape::closed_cylinder, test.bed.width = 0.32;
         add({-0.3, 0, 0.3, 0.7});
         test.shape = WheelShape::tyre, test.bed.length = 1.05;
         add({-0.3, 0, 0.3, 0.7});
@@ -369,10 +382,10 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
          -no_bound, 0},
         {"torque of the mesh over that of the cylinder - 1, plane strain, slip 0.3",
          prism.torque / rolling.torque - 1, -0.1, 0.1}};
-    for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre})
+    for (const WheelShape shape : {WheelShape::closed_cylinder, WheelShape::tyre})
         if (const std::vector<Measured> mesh = of(shape); !mesh.empty()) {
             const OverSlip over_slip(mesh);
-            const std::string name = wheel_shape_names[static_cast<int>(shape)];
+            const std::string name = name_of(shape);
             out.push_back(
                 {name + ": least increase of the pull to the next slip [N]", over_slip.pull, 0, no_bound});
             out.push_back({name + ": least increase of the torque to the next slip [N m]", over_slip.torque,
@@ -403,7 +416,7 @@ ValidationResult run(const ValidationOptions& options)
     std::map<std::string, std::vector<Vec3>> soils;  // by the hash of their case
     for (const auto& [first, beds] : all) {
         WheelTest test = first;
-        const char* wheel = wheel_shape_names[static_cast<int>(test.shape)];
+        const char* wheel = name_of(test.shape);
         WheelRecord pooled;  // the records of all beds, one after the other
         for (int n = 0; n < beds; ++n, ++test.bed.seed) {
             const auto [soil, is_new] = soils.try_emplace(bed_case(test.bed).hash());
@@ -411,23 +424,21 @@ ValidationResult run(const ValidationOptions& options)
                 soil->second = settled_soil(
                     test.bed, options, [&](double share) { options.progress((done + share / 2) / parts); });
             WheelRecord r;
-            options.kept.part(
-                [&, &from = soil->second] { r = drive(test, from, options); },
-                [&](io::Archive& a) {
-                    for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage, &r.grain})
-                        a.list(*column);
-                    a.value(r.from), a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x),
-                        a.value(r.wheel_z);
-                });
+            options.kept.part([&, &from = soil->second] { r = drive(test, from, options); },
+                              [&](io::Archive& a) {
+                                  for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage})
+                                      a.list(*column);
+                                  a.list(r.grains), a.value(r.from), a.value(r.power), a.value(r.dissipated),
+                                      a.value(r.wheel_x), a.value(r.wheel_z);
+                              });
             options.progress(++done / parts);
             pooled.append(r);
             if (n > 0) continue;
             for (std::size_t k = 0; k < r.t.size(); ++k)
                 motion.rows.push_back(
                     {wheel, test.slip, test.mu_r, r.t[k], r.pull[k], r.load[k], r.torque[k], r.sinkage[k]});
-            for (std::size_t k = 0; k + 2 < r.grain.size(); k += 3)
-                grains.rows.push_back({wheel, test.slip, test.mu_r, r.grain[k], r.grain[k + 1],
-                                       r.grain[k + 2], r.wheel_x, r.wheel_z});
+            for (const WheelRecord::Grain& p : r.grains)
+                grains.rows.push_back({wheel, test.slip, test.mu_r, p.x, p.z, p.speed, r.wheel_x, r.wheel_z});
         }
         const double count = beds;
         const WheelRecord::Mean pull = pooled.mean(pooled.pull, pooled.from),

@@ -14,12 +14,13 @@ namespace hilda::granular {
 
 /// The shapes of a wheel. All but the cylinder are meshes.
 enum class WheelShape {
-    cylinder,  ///< plane strain
-    prism,     ///< plane strain: the cylinder as a prism of triangles across the period
-    ends,      ///< cylinder of the width of 16 cm, with end faces
-    tyre       ///< torus of the width of 16 cm
+    cylinder,         ///< plane strain
+    prism,            ///< plane strain: the cylinder as a prism of triangles across the period
+    closed_cylinder,  ///< cylinder of the width of 16 cm, with end faces
+    tyre              ///< torus of the width of 16 cm
 };
-inline constexpr const char* wheel_shape_names[] = {"cylinder", "prism", "cylinder with ends", "tyre"};
+/// In tables: "cylinder", "prism", "cylinder with ends", "tyre"
+const char* name_of(WheelShape shape);
 
 /// A bed that is periodic along the axis of the wheel
 struct WheelBed {
@@ -57,10 +58,13 @@ struct WheelRecord {
     /// Means over the intervals: end of the interval [s], pull (F_x) and vertical load [N], driving torque
     /// [N m], sinkage [m]
     std::vector<double> t, pull, load, torque, sinkage;
-    double from = 0;                  ///< start of the averaging: of the first interval in this share [s]
-    double power = 0;                 ///< mean of torque ω - pull v after `from` [W]
-    double dissipated = 0;            ///< mean dissipation of the contacts of the grains after `from` [W]
-    std::vector<double> grain;        ///< x, z, speed of each grain at the end [m, m/s]
+    double from = 0;        ///< start of the averaging: of the first interval in this share [s]
+    double power = 0;       ///< mean of torque ω - pull v after `from` [W]
+    double dissipated = 0;  ///< mean dissipation of the contacts of the grains after `from` [W]
+    struct Grain {
+        double x, z, speed;  ///< [m, m, m/s]
+    };
+    std::vector<Grain> grains;        ///< all at the end
     double wheel_x = 0, wheel_z = 0;  ///< axis of the wheel at the end [m]
 
     struct Mean {

@@ -130,8 +130,7 @@ void add_slice(DrumMixing& out, const World& world, const MixingDrum& d)
 {
     world.each_particle([&](const Particle& p) {
         if (std::abs(p.r.y) < d.radius(M2))
-            out.slices.insert(out.slices.end(),
-                              {out.t.back(), p.r.x, p.r.z, p.radius, static_cast<double>(p.material)});
+            out.slices.push_back({out.t.back(), p.r.x, p.r.z, p.radius, p.material});
     });
 }
 
@@ -191,9 +190,9 @@ ValidationResult run(const ValidationOptions& options)
     options.kept.part([&] { m = drum_mixing(d, options, options.progress); },
                       [&](io::Archive& a) {
                           for (auto* column : {&m.t, &m.zone1_M1, &m.zone1_M2, &m.zone2_M1, &m.zone2_M2,
-                                               &m.separation, &m.lean, &m.torque, &m.gravity, &m.slices})
+                                               &m.separation, &m.lean, &m.torque, &m.gravity})
                               a.list(*column);
-                          a.value(m.work), a.value(m.gain), a.value(m.lost);
+                          a.list(m.slices), a.value(m.work), a.value(m.gain), a.value(m.lost);
                       });
     options.progress(1);
     const auto of_M1 = static_cast<double>(d.number(M1)), of_M2 = static_cast<double>(d.number(M2)),
@@ -216,9 +215,8 @@ ValidationResult run(const ValidationOptions& options)
         motion.rows.push_back(
             {m.t[k], m.zone1_M1[k], m.zone1_M2[k], m.zone2_M1[k], m.zone2_M2[k], m.separation[k], m.lean[k]});
     ValidationTable grains{"grains", {"t", "x", "z", "radius", "material"}, {}};
-    for (std::size_t k = 0; k + 4 < m.slices.size(); k += 5)
-        grains.rows.push_back({m.slices[k], m.slices[k + 1], m.slices[k + 2], m.slices[k + 3],
-                               m.slices[k + 4] == static_cast<double>(M1) ? "M1" : "M2"});
+    for (const DrumMixing::SliceGrain& p : m.slices)
+        grains.rows.push_back({p.t, p.x, p.z, p.radius, p.material == M1 ? "M1" : "M2"});
     return {
         {table, motion, grains},
         {{"torque on the drum over the moment of the weight, second half", late(m.torque) / late(m.gravity),

@@ -31,9 +31,12 @@ struct DrumMixing {
     std::vector<double>
         torque;  ///< of the grains on the drum against its rotation, mean over the interval [N m]
     std::vector<double> gravity;  ///< moment of the weight of the grains about the axis, the same mean [N m]
-    /// Grains with |y| below the larger radius at the start, after 0.3 of the time and at the end: t, x, z,
-    /// radius and material of each
-    std::vector<double> slices;
+    struct SliceGrain {
+        double t, x, z, radius;  ///< [s, m, m, m]
+        int material;
+    };
+    /// Grains with |y| below the larger radius at the start, after 0.3 of the time and at the end
+    std::vector<SliceGrain> slices;
     double work = 0;  ///< of the drum on the grains [J]
     double gain = 0;  ///< of the energy of the grains [J]
     double lost = 0;  ///< number of grains that are missing at the end

@@ -59,7 +59,7 @@ TEST_CASE("the bed carries the weight of a wheel, and a larger slip gives more p
     // Wheels that are narrower than the period
     test.bed.width = 0.2, test.duration = 1;
     const std::vector<Vec3> wide = settled_soil(test.bed, {});
-    for (const WheelShape shape : {WheelShape::ends, WheelShape::tyre}) {
+    for (const WheelShape shape : {WheelShape::closed_cylinder, WheelShape::tyre}) {
         test.shape = shape;
         const WheelRecord narrow = drive(test, wide, {});
         CHECK(narrow.mean(narrow.load, 0.5).value == Approx(80).epsilon(0.05));

@@ -178,7 +178,7 @@ public:
     DrumFlow result() const
     {
         DrumFlow out;
-        out.lean = std::atan2(-mass_x, -mass_z) * 180 / std::numbers::pi;
+        out.centre_angle = std::atan2(-mass_x, -mass_z) * 180 / std::numbers::pi;
         out.airborne = airborne / count, out.covered = covered;
         for (int i = 0; i < 2 * side; ++i)
             out.x.push_back((i + 0.5 - side) * 2 * d.R), out.surface.push_back(surface(i));
@@ -383,7 +383,7 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
                 out.push_back({io::formatted("angle of the centre of mass above that at Fr = %g, ",
                                              last->run.of.froude) +
                                    at,
-                               m.flow.lean - last->flow.lean, 0, no_bound});
+                               m.flow.centre_angle - last->flow.centre_angle, 0, no_bound});
             last = &m;
         }
     }
@@ -405,7 +405,7 @@ ValidationResult run(const ValidationOptions& options)
     options.progress((done = 1) / parts);
 
     ValidationTable table{
-        "study", {"froude", "g", "omega", "R", "turns", "angle", "lean", "airborne", "covered"}, {}},
+        "study", {"froude", "g", "omega", "R", "turns", "angle", "centre_angle", "airborne", "covered"}, {}},
         surface{"surface", {"froude", "g", "x", "z"}, {}},
         slice{"grains", {"froude", "g", "x", "z", "speed"}, {}};
     std::vector<Measured> measured;
@@ -413,13 +413,14 @@ ValidationResult run(const ValidationOptions& options)
         DrumFlow f;
         options.kept.part([&] { f = flow(r.of, grains, options); },
                           [&](io::Archive& a) {
-                              a.value(f.angle), a.value(f.lean), a.value(f.airborne), a.value(f.covered);
+                              a.value(f.angle), a.value(f.centre_angle), a.value(f.airborne),
+                                  a.value(f.covered);
                               a.list(f.x), a.list(f.surface), a.list(f.slice), a.list(f.centres);
                           });
         options.progress(++done / parts);
         const double Fr = r.of.froude, g = r.of.drum.g;
         table.rows.push_back(
-            {Fr, g, r.of.omega(), r.of.drum.R, r.of.turns, f.angle, f.lean, f.airborne, f.covered});
+            {Fr, g, r.of.omega(), r.of.drum.R, r.of.turns, f.angle, f.centre_angle, f.airborne, f.covered});
         for (std::size_t k = 0; k < f.x.size(); ++k)
             if (std::isfinite(f.surface[k])) surface.rows.push_back({Fr, g, f.x[k], f.surface[k]});
         for (const DrumFlow::SliceGrain& p : f.slice) slice.rows.push_back({Fr, g, p.x, p.z, p.speed});

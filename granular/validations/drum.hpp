@@ -41,7 +41,8 @@ struct DrumRun {
 /// The flow over the last turns. x is horizontal, z is vertical, and the drum lifts grains at x < 0.
 struct DrumFlow {
     double angle = 0;  ///< of the surface, from its middle part [°]
-    double lean = 0;   ///< angle between the vertical and the line from the axis to the centre of mass [°]
+    /// Angle between the vertical and the line from the axis to the centre of mass [°]
+    double centre_angle = 0;
     double airborne = 0;  ///< share of the grains that fall freely
     double covered = 0;   ///< share of the rim with grains that move with the shell: least of all samples
     std::vector<double> x, surface;  ///< of each column: its middle, height of the surface; NaN: none [m]

@@ -50,7 +50,7 @@ def draw(folder):
     froude = numbers(rows, "froude")
     flat = [row for row in rows if number(row["froude"]) < 0.2]
     angle.plot(numbers(flat, "froude"), numbers(flat, "angle"), "o-", color=COLOURS[0], label="surface")
-    angle.plot(froude, numbers(rows, "lean"), "s--", color=COLOURS[1], label="centre of mass")
+    angle.plot(froude, numbers(rows, "centre_angle"), "s--", color=COLOURS[1], label="centre of mass")
     angle.set(xscale="log", xlabel="Froude number", ylabel="angle [°]", ylim=(0, None))
     share.plot(froude, [100 * value for value in numbers(rows, "covered")], "o-", color=COLOURS[2], label="rim covered")
     share.plot(froude, [100 * value for value in numbers(rows, "airborne")], "s-", color=COLOURS[3], label="airborne grains")

@@ -123,7 +123,7 @@ void add_sample(DrumMixing& out, const World& world, double start)
     out.zone1_M1.push_back(zone[0][0]), out.zone1_M2.push_back(zone[0][1]);
     out.zone2_M1.push_back(zone[1][0]), out.zone2_M2.push_back(zone[1][1]);
     out.separation.push_back(((1 / mass[0]) * centre[0] - (1 / mass[1]) * centre[1]).norm() / radius);
-    out.lean.push_back(std::atan2(all.x, -all.z) * 180 / std::numbers::pi);
+    out.centre_angle.push_back(std::atan2(all.x, -all.z) * 180 / std::numbers::pi);
 }
 
 void add_slice(DrumMixing& out, const World& world, const MixingDrum& d)
@@ -190,7 +190,7 @@ ValidationResult run(const ValidationOptions& options)
     options.kept.part([&] { m = drum_mixing(d, options, options.progress); },
                       [&](io::Archive& a) {
                           for (auto* column : {&m.t, &m.zone1_M1, &m.zone1_M2, &m.zone2_M1, &m.zone2_M2,
-                                               &m.separation, &m.lean, &m.torque, &m.gravity})
+                                               &m.separation, &m.centre_angle, &m.torque, &m.gravity})
                               a.list(*column);
                           a.list(m.slices), a.value(m.work), a.value(m.gain), a.value(m.lost);
                       });
@@ -202,18 +202,20 @@ ValidationResult run(const ValidationOptions& options)
     const double early =
                      std::accumulate(m.separation.begin(), m.separation.begin() + 2 * n / 5, 0., max_or_nan),
                  last = std::accumulate(m.separation.end() - 2 * n / 5, m.separation.end(), 0., max_or_nan);
-    ValidationTable table{
-        "study",
-        {"grains_M1", "grains_M2", "size", "softness", "zone1_M1", "zone1_M2", "zone2_M1", "zone2_M2",
-         "separation_early", "separation_late", "lean", "torque", "gravity", "work", "gain", "dissipated"},
-        {}},
-        motion{"motion", {"t", "zone1_M1", "zone1_M2", "zone2_M1", "zone2_M2", "separation", "lean"}, {}};
+    ValidationTable table{"study",
+                          {"grains_M1", "grains_M2", "size", "softness", "zone1_M1", "zone1_M2", "zone2_M1",
+                           "zone2_M2", "separation_early", "separation_late", "centre_angle", "torque",
+                           "gravity", "work", "gain", "dissipated"},
+                          {}},
+        motion{"motion",
+               {"t", "zone1_M1", "zone1_M2", "zone2_M1", "zone2_M2", "separation", "centre_angle"},
+               {}};
     table.rows.push_back({of_M1, of_M2, d.scale.size, d.scale.softness, late(m.zone1_M1), late(m.zone1_M2),
-                          late(m.zone2_M1), late(m.zone2_M2), early, last, late(m.lean), late(m.torque),
-                          late(m.gravity), m.work, m.gain, m.work - m.gain});
+                          late(m.zone2_M1), late(m.zone2_M2), early, last, late(m.centre_angle),
+                          late(m.torque), late(m.gravity), m.work, m.gain, m.work - m.gain});
     for (std::size_t k = 0; k < m.t.size(); ++k)
-        motion.rows.push_back(
-            {m.t[k], m.zone1_M1[k], m.zone1_M2[k], m.zone2_M1[k], m.zone2_M2[k], m.separation[k], m.lean[k]});
+        motion.rows.push_back({m.t[k], m.zone1_M1[k], m.zone1_M2[k], m.zone2_M1[k], m.zone2_M2[k],
+                               m.separation[k], m.centre_angle[k]});
     ValidationTable grains{"grains", {"t", "x", "z", "radius", "material"}, {}};
     for (const DrumMixing::SliceGrain& p : m.slices)
         grains.rows.push_back({p.t, p.x, p.z, p.radius, p.material == M1 ? "M1" : "M2"});

@@ -27,7 +27,7 @@ struct DrumMixing {
     std::vector<double> zone1_M1, zone1_M2, zone2_M1, zone2_M2;  ///< numbers of grains
     std::vector<double> separation;  ///< distance of the centres of mass of M1 and M2 over the radius
     std::vector<double>
-        lean;  ///< angle between the vertical and the line from the axis to the centre of mass [°]
+        centre_angle;  ///< angle between the vertical and the line from the axis to the centre of mass [°]
     std::vector<double>
         torque;  ///< of the grains on the drum against its rotation, mean over the interval [N m]
     std::vector<double> gravity;  ///< moment of the weight of the grains about the axis, the same mean [N m]

@@ -23,8 +23,8 @@ TEST_CASE(
     const DrumRun slow{.drum = drum, .froude = 0.1, .turns = 0.5, .averaged = 0.25};
     const DrumFlow f = flow(slow, grains, {});
     CHECK(f.centres.size() == grains.size());
-    CHECK(f.lean > 15);
-    CHECK(f.lean < 75);
+    CHECK(f.centre_angle > 15);
+    CHECK(f.centre_angle < 75);
     CHECK(f.covered < 0.8);
 
     // E ~ g, h ~ 1/omega: powers of two change no rounding, so that the positions are equal.

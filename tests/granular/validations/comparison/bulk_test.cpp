@@ -44,7 +44,7 @@ TEST_CASE("larger grains are fewer, and softer grains allow larger steps", "[gra
     CHECK(m[steel].density == 7200);
 }
 
-TEST_CASE("a loose lattice has the grains that are demanded, in its region and without contact",
+TEST_CASE("a loose lattice has the requested number of grains, in its region and without contact",
           "[granular][comparison]")
 {
     Particle p;
@@ -92,8 +92,8 @@ TEST_CASE("a drum lifts its grains, and its torque is their moment (long)", "[gr
     CHECK(one.lost == 0);
     CHECK(one.zone2_M1 == three.zone2_M1);
     CHECK(one.torque == three.torque);
-    CHECK(one.lean.front() == Approx(0).margin(6));
-    CHECK(one.lean.back() > 10);
+    CHECK(one.centre_angle.front() == Approx(0).margin(6));
+    CHECK(one.centre_angle.back() > 10);
     CHECK(one.work > one.gain);
     double torque = 0, gravity = 0;
     for (std::size_t k = one.torque.size() / 2; k < one.torque.size(); ++k)

@@ -12,16 +12,16 @@
 
 namespace hilda::granular {
 
-/// A plate about x = 0, periodic along y, with a bed of grains between two walls at its edges. Lengths are in
-/// mean diameters of the grains.
+/// A plate about x = 0, periodic along y, with a bed of grains between two walls at its edges. Width, length
+/// and height are in mean diameters of the grains.
 struct Heap {
     double mu = 0.5, mu_r = 0.05;  ///< coefficients of friction and of rolling resistance
     int seed = 1;                  ///< of the radii and of the places at the start
     double d = 4e-3;               ///< mean diameter of the grains [m]
     double E = 2e6;                ///< Young's modulus [Pa]
     double h = 1e-4;               ///< step [s]
-    double width = 36;             ///< of the plate
-    double length = 8;             ///< of the period along y
+    double width = 36;             ///< of the plate, along x
+    double length = 8;             ///< period along y
     double height = 11;            ///< approximate height of the bed between the walls
     double speed = 0.2;            ///< at which the walls sink [m/s]
 
@@ -53,7 +53,8 @@ FlankAngles flank_angles(const HeapSurface& surface, const Heap& heap);
 struct RestingHeap {
     std::vector<BedSphere> spheres;  ///< of the grains and of the plate
     double grains = 0;               ///< number of grains on the plate
-    double balance = 0;  ///< mass on the plate and fallen off, less the initial one, over the latter
+    /// Mass on the plate plus mass that has left, over the initial mass, less 1
+    double balance = 0;
 };
 
 /// The heap that remains when the walls have sunk to the plate. `progress` receives values from 0 to 1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Grains that come to rest under their weight.
+/// Settling of grains under their weight: time integration until the kinetic energy is small.
 
 #pragma once
 
@@ -10,8 +10,9 @@
 
 namespace hilda::granular {
 
+/// Criterion of settled grains
 struct Settling {
-    std::string what;       ///< for messages: "the bed"
+    std::string what;       ///< subject of the message of an error: "the bed"
     long interval = 1;      ///< between two evaluations of the energy [steps]
     double longest = 0;     ///< from the call on [s]
     double energy = 0;      ///< largest kinetic energy of settled grains over Σ m g R of all [1]

@@ -303,7 +303,7 @@ std::vector<ValidationCheck> checks(const std::vector<Measured>& all)
 ValidationResult run(const ValidationOptions& options)
 {
     const std::vector<ShearTest> all = tests(options.full);
-    if (options.full) options.announce("6 shear tests, about 6 minutes of CPU time in the preset native");
+    if (options.full) options.announce("6 shear tests, 5 to 6 minutes of CPU time in the preset native");
     std::map<double, std::string> samples;  // by mu
     for (const ShearTest& test : all) samples[test.box.mu];
     double done = 0;

@@ -11,10 +11,10 @@
 
 namespace hilda::granular {
 
-/// A box of two halves with a sample of equal grains that settles under its weight
+/// A box of two halves, and the sample of equal grains in it
 struct ShearBox {
-    double edge = 0.12;    ///< of the square section, b [m]
-    double lower = 0.03;   ///< height of the lower half [m]
+    double edge = 0.12;    ///< edge b of the square section [m]
+    double lower = 0.03;   ///< height of the lower half [m]; the shear plane is its upper edge
     double depth = 0.065;  ///< approximate height of the settled sample [m]
     double R = 3e-3;       ///< radius of the grains [m]
     double mu = 0.18;      ///< coefficient of friction between grains
@@ -30,20 +30,21 @@ std::string settled_sample(
     const ShearBox& box, const ValidationOptions& options,
     const std::function<void(double)>& progress = [](double) {});
 
+/// The lid presses the sample for a time. Then the upper half and the lid move.
 struct ShearTest {
     ShearBox box = {};
-    double stress = 6.4e3;    ///< of the lid, σ [Pa]
-    double speed = 0.01;      ///< of the upper half [m/s]
-    double distance = 6e-3;   ///< [m]
+    double stress = 6.4e3;    ///< weight of the lid over b² [Pa]
+    double speed = 0.01;      ///< of the upper half and of the lid [m/s]
+    double distance = 6e-3;   ///< largest displacement of the upper half [m]
     double pressing = 0.4;    ///< time under the lid before the shear [s]
-    double interval = 1e-4;   ///< displacement over which a sample of the record is averaged [m]
+    double interval = 1e-4;   ///< displacement over which a row of the record is averaged [m]
     long between_loads = 25;  ///< steps between two evaluations of the loads
 };
 
-/// Means over the intervals of the displacement
+/// Result of a shear test. The columns have one mean for each interval of the displacement.
 struct ShearRecord {
-    double sigma =
-        0;  ///< stress in the shear plane: weight of the lid and of the grains above it over b² [Pa]
+    /// Stress in the shear plane: weight of the lid and of the grains above the plane over b² [Pa]
+    double sigma = 0;
     std::vector<double> x;         ///< displacement of the upper half, middle of the interval [m]
     std::vector<double> tau;       ///< shear stress (F_x of the lid + F_x of the upper half)/(b (b - x)) [Pa]
     std::vector<double> lid;       ///< height of the lid above its height at the start of the shear [m]

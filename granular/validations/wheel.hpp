@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Wheel with prescribed slip on a bed of grains, in plane strain and as a mesh; see wheel.cpp.
+/// Wheel with prescribed slip on a bed of grains; see wheel.cpp.
 
 #pragma once
 
@@ -12,21 +12,21 @@
 
 namespace hilda::granular {
 
-/// The shapes of a wheel. All but the cylinder are meshes.
+/// Shape of a wheel. The cylinder is an analytic surface, the others are meshes.
 enum class WheelShape {
-    cylinder,         ///< plane strain
-    prism,            ///< plane strain: the cylinder as a prism of triangles across the period
+    cylinder,         ///< as wide as the period of the bed (plane strain)
+    prism,            ///< the same cylinder as a prism of 96 sides
     closed_cylinder,  ///< cylinder of the width of 16 cm, with end faces
     tyre              ///< torus of the width of 16 cm
 };
 /// In tables: "cylinder", "prism", "cylinder with ends", "tyre"
 const char* name_of(WheelShape shape);
 
-/// A bed that is periodic along the axis of the wheel
+/// A bed of equal grains that is periodic along y, the axis of the wheel
 struct WheelBed {
     double length = 0.7;       ///< along x, between end walls [m]
     double width = 0.06;       ///< period along y [m]
-    double depth = 0.10;       ///< approximate [m]
+    double depth = 0.10;       ///< approximate depth of the settled bed [m]
     double R = 7.5e-3;         ///< radius of the grains [m]
     double k = 1e6;            ///< normal and tangential stiffness at an overlap of R [N/m]
     double settling_mu = 0.1;  ///< coefficient of friction during the settling; it determines the packing
@@ -37,8 +37,8 @@ struct WheelBed {
 /// What determines the settled bed
 BedCase bed_case(const WheelBed& bed);
 
-/// Centres of the settled grains, from ValidationOptions::beds if it is kept there. `progress`
-/// receives values from 0 to 1. Throws io::NumericalFailure if the bed does not settle.
+/// Centres of the settled grains, from ValidationOptions::beds if they are kept there. `progress` receives
+/// values from 0 to 1. Throws io::NumericalFailure if the bed does not settle.
 std::vector<Vec3> settled_soil(
     const WheelBed& bed, const ValidationOptions& options,
     const std::function<void(double)>& progress = [](double) {});
@@ -53,7 +53,8 @@ struct WheelTest {
     double interval = 0.05;  ///< between rows of the record [s]
 };
 
-/// Loads per width of the wheel of the dissertation, 16 cm
+/// Result of a wheel test. In plane strain the loads and powers are those of a width of 16 cm, the width of
+/// the wheel of the dissertation.
 struct WheelRecord {
     /// Means over the intervals: end of the interval [s], pull (F_x) and vertical load [N], driving torque
     /// [N m], sinkage [m]

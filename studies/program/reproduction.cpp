@@ -293,9 +293,12 @@ std::vector<Reproduction> chapters_7_and_8()
         grains("drum", {"7.19"}, "Grains in a rotating drum",
                "Flow of the grains, coloured by their speed, over the Froude number.",
                "grains of 1 mm radius instead of 0.5 mm, and fewer speeds"),
-        grains("wheel", {"7.21", "7.22", "7.23"}, "Single wheel on grains",
-               "Pull, driving torque and sinkage over the slip, in plane strain.",
-               "a narrower bed and four slips instead of nine"),
+        grains("wheel", {"7.21", "7.22", "7.23", "7.25"}, "Single wheel on grains",
+               "Pull, driving torque and sinkage over the slip, in plane strain; in the full grid also of a "
+               "cylinder with end faces and of a tyre.",
+               "a narrower bed, four slips instead of nine, one bed instead of four, and no cylinder with "
+               "end faces and "
+               "no tyre"),
         {.name = "contact-methods",
          .chapter = 8,
          .figures = {"Sec. 8.2"},

@@ -80,7 +80,10 @@ double in_double(const PairLaw& law)
 struct Slide {
     double distance = std::nan("");  ///< [m]
     double friction_ratio = 0;       ///< largest |F_t|/(μ |F_n|) over all steps
-    std::vector<double> motion;      ///< t, x, v of each output row [s, m, m/s]
+    struct Sample {
+        double t, x, v;  ///< [s, m, m/s]
+    };
+    std::vector<Sample> motion;
 };
 
 /// The law with the bound of the spring alone, as Eqs. 2.46 and 2.47 are printed
@@ -113,7 +116,7 @@ Slide slide(double mu, const PairLaw& law, const std::string& name, const Valida
         const double x = p.r.x - start;
         if (p.v.norm() < rest_speed) out.distance = x;
         if (n % interval == 0 || !std::isnan(out.distance))
-            out.motion.insert(out.motion.end(), {static_cast<double>(n) * h, x, double(p.v.x)});
+            out.motion.push_back({static_cast<double>(n) * h, x, p.v.x});
         for (const ContactRecord& c : world.contacts())
             out.friction_ratio =
                 max_or_nan(out.friction_ratio, std::hypot(c.F.x, c.F.y) / (mu * std::abs(c.F.z)));
@@ -149,8 +152,8 @@ ValidationResult run(const ValidationOptions& options)
                     a.value(s.distance), a.value(s.friction_ratio), a.list(s.motion);
                     a.value(distance_double);
                 });
-            for (std::size_t k = 0; !is_incremental && k + 2 < s.motion.size(); k += 3)
-                motion.rows.push_back({mu, s.motion[k], s.motion[k + 1], s.motion[k + 2]});
+            if (!is_incremental)
+                for (const Slide::Sample& row : s.motion) motion.rows.push_back({mu, row.t, row.x, row.v});
             const double d = v_i * v_i / (2 * mu * g), spring = distance_with_spring(mu),
                          difference = s.distance / d - 1;
             table.rows.push_back({name, mu, s.distance, d, difference, distance_double,

@@ -183,9 +183,9 @@ CollisionRecord impact(const SlowImpact& of, const std::vector<Vec3>& beads, con
     Boundary& b = world.boundary(now.ball);
     b.mass = ball_mass, b.inertia = 0.4 * ball_mass * ball_radius * ball_radius;
     const double v = of.speed - of.g * free_fall;
-    const double contact = first_contact(equal_spheres(world, R), ball_radius,
-                                         [&](const Vec3& r) { return std::hypot(r.x - of.x, r.y); });
-    b.r = {of.x, 0, contact + v * free_fall + of.g * free_fall * free_fall / 2};
+    const auto distance = [&](const Vec3& r) { return std::hypot(r.x - of.x, r.y); };
+    const double lowest = first_contact(equal_spheres(world, R), ball_radius, distance) - ball_radius;
+    b.r = {of.x, 0, lowest + v * free_fall + of.g * free_fall * free_fall / 2 + ball_radius};
     b.v = {0, 0, -v};
 
     CollisionRecord out{.interval = sample, .g = of.g, .z = {}, .v = {}, .a = {}, .a_low = {}};

@@ -18,28 +18,55 @@ double stored_mass(double radius, double density)
     return 1 / static_cast<double>(static_cast<float>(1 / sphere_mass(radius, density)));
 }
 
+/// The largest whole number up to x. A number that is whole up to rounding errors is whole.
+double whole(double x) { return std::floor(x * (1 + 1e-12) + 1e-9); }
+
 }  // namespace
 
-double InsertionSpec::due(double t, double since) const
+bool InsertionFlow::has_values_of(const InsertionFlow& o) const
 {
-    const double time = std::min(t, to) - std::max(from, since);
-    if (!(time >= 0)) return 0;
-    if (mass_rate > 0) return mass_rate * time;
-    // a number that is whole up to rounding errors is whole
-    return rate > 0 ? std::floor(rate * time * (1 + 1e-12) + 1e-9) : static_cast<double>(count);
+    return rate == o.rate && mass_rate == o.mass_rate && to == o.to && v == o.v && random_v == o.random_v &&
+           active == o.active;
 }
+
+void InsertionFlow::transfer(io::Archive& a)
+{
+    auto is_active = static_cast<std::uint64_t>(active);
+    a.value(rate), a.value(mass_rate), a.value(to), a.value(v), a.value(random_v), a.value(is_active);
+    a.value(since), a.value(number), a.value(mass);
+    active = is_active != 0;
+    const auto is_amount = [](double x) { return x >= 0 && std::isfinite(x); };
+    a.check(is_amount(rate) && is_amount(mass_rate) && !std::isnan(to) && finite(v) && is_amount(random_v) &&
+                is_active <= 1 && is_amount(since) && std::isfinite(number) && std::isfinite(mass),
+            io::formatted("invalid flow of an insertion, got %g particles/s, %g kg/s, since t = %g s, %g "
+                          "particles and %g kg due until then",
+                          rate, mass_rate, since, number, mass));
+}
+
+double InsertionSpec::due(const InsertionFlow& of, double t) const
+{
+    const double earlier = of.mass_rate > 0 ? of.mass : of.number,
+                 time = std::min(t, of.to) - std::max(from, of.since);
+    if (!of.active || !(time >= 0)) return earlier;
+    if (of.mass_rate > 0) return earlier + of.mass_rate * time;
+    return of.rate > 0 ? earlier + of.rate * time : static_cast<double>(count);
+}
+
+double InsertionSpec::mean_mass() const { return 4. / 3 * M_PI * density * sizes.mean_cube(); }
 
 double InsertionSpec::largest_count(double t) const
 {
-    const double mean_mass = 4. / 3 * M_PI * density * sizes.mean_cube();
-    const double number = mass_rate > 0 ? 1.05 * due(t) / mean_mass + 100 : due(t);
+    InsertionFlow of = flow;
+    of.active = true;  // a change of the run can set it
+    const double due = this->due(of, t),
+                 number = flow.mass_rate > 0 ? 1.05 * due / mean_mass() + 100 : whole(due);
     return std::min(number, static_cast<double>(count));
 }
 
 Particle InsertionSpec::particle(double radius) const
 {
     Particle p;
-    p.radius = radius, p.material = material, p.replica = replica, p.v = v;
+    p.radius = radius, p.material = material, p.replica = replica, p.v = flow.v;
     return p;
 }
 
@@ -52,59 +79,35 @@ std::vector<Particle> InsertionSpec::samples() const
     return all;
 }
 
-Insertion::Insertion(const InsertionSpec& of) : spec(of) { state.random = spec.seed; }
+Insertion::Insertion(const InsertionSpec& of) : spec(of), flow(of.flow) { state.random = spec.seed; }
 
-double Insertion::due(const InsertionSpec& of, double t) const
+void Insertion::begin_flow(const InsertionFlow& of, double t)
 {
-    const double earlier = of.mass_rate > 0 ? base.mass : static_cast<double>(base.count);
-    if (!of.active) return base.is_set ? earlier : 0;
-    if (!base.is_set || (of.rate == 0 && of.mass_rate == 0)) return of.due(t);
-    return earlier + of.due(t, base.t);
-}
-
-void Insertion::restart(double t)
-{
-    if (spec.rate == before.rate && spec.mass_rate == before.mass_rate && spec.active == before.active)
-        return;
-    Base now{true, t, state.count, state.mass};
-    if (before.mass_rate > 0)
-        now.mass = std::max(now.mass, due(before, t));
-    else if (before.rate > 0)
-        now.count = std::max(now.count, static_cast<std::int64_t>(due(before, t)));
-    base = now;
+    if (of.has_values_of(flow)) return;
+    const double due = spec.due(flow, t);
+    InsertionFlow next = of;
+    next.since = t, next.number = static_cast<double>(state.count), next.mass = state.mass;
+    if (flow.mass_rate > 0)
+        next.number += (due - state.mass) / spec.mean_mass(), next.mass = due;
+    else if (flow.rate > 0)
+        next.mass += (due - next.number) * spec.mean_mass(), next.number = due;
+    flow = next;
 }
 
 bool Insertion::is_due(const State& now, double t) const
 {
-    if (now.count >= spec.count) return false;
-    if (spec.mass_rate == 0) return static_cast<double>(now.count) < due(spec, t);
+    if (!flow.active || now.count >= spec.count) return false;
+    const double due = spec.due(flow, t);
+    if (flow.mass_rate == 0) return static_cast<double>(now.count) < whole(due);
     // the inserted mass is the closest one to that which is due
-    return now.mass + stored_mass(now.radius, spec.density) / 2 <= due(spec, t);
-}
-
-void Insertion::set_flow(const InsertionSpec& of)
-{
-    before = spec;
-    spec.rate = of.rate, spec.mass_rate = of.mass_rate, spec.to = of.to;
-    spec.v = of.v, spec.random_v = of.random_v, spec.active = of.active;
-}
-
-void Insertion::transfer_base(io::Archive& a)
-{
-    auto is_set = static_cast<std::uint64_t>(base.is_set);
-    a.value(is_set), a.value(base.t), a.value(base.count), a.value(base.mass);
-    base.is_set = is_set != 0;
-    a.check(is_set <= 1 && std::isfinite(base.t) && std::isfinite(base.mass) && base.count >= 0,
-            io::formatted("invalid restart of the insertion '%s', got t = %g s, %lld particles of %g kg",
-                          spec.name.c_str(), base.t, static_cast<long long>(base.count), base.mass));
+    return now.mass + stored_mass(now.radius, spec.density) / 2 <= due;
 }
 
 void Insertion::throw_blocked(const State& now, double t) const
 {
     throw InsertionBlocked(io::formatted(
-        "insertion '%s': no place for a particle of radius %.9g m in its region, a %s, in %lld tries from t "
-        "= %.9g s to "
-        "t = %.9g s; it has inserted %lld particles",
+        "insertion '%s': no place for a particle of radius %.9g m in its region, a %s, in %lld tries from "
+        "t = %.9g s to t = %.9g s; it has inserted %lld particles",
         spec.name.c_str(), now.radius, spec.region.description().c_str(), static_cast<long long>(now.tries),
         now.blocked_since, t, static_cast<long long>(now.count)));
 }
@@ -137,7 +140,7 @@ std::optional<std::uint32_t> Insertion::before_step(World& world)
                 if (!spec.postpones || now.tries >= spec.most_tries) throw_blocked(now, t);
                 break;
             }
-            p.v += spec.random_v * random.direction();
+            p.v = flow.v + flow.random_v * random.direction();
             obstacles.add(p.r, p.radius);
             placed.push_back(p);
             now.mass += stored_mass(p.radius, spec.density);
@@ -156,6 +159,7 @@ std::optional<std::uint32_t> Insertion::before_step(World& world)
 
 void Insertion::transfer(io::Archive& a)
 {
+    flow.transfer(a);
     a.value(state);
     a.check(state.count >= 0 && state.count <= spec.count && std::isfinite(state.mass) && state.mass >= 0 &&
                 state.tries >= 0 && std::isfinite(state.blocked_since) &&
@@ -191,16 +195,6 @@ void Insertions::start(World& world, double t)
             if (const std::optional<std::uint32_t> first = i.before_step(w); first && groups != nullptr)
                 groups->add(*first, i.what().group);
     });
-}
-
-bool Insertions::is_restarted() const
-{
-    return std::any_of(all.begin(), all.end(), [](const Insertion& i) { return i.is_restarted(); });
-}
-
-void Insertions::transfer_bases(io::Archive& a)
-{
-    for (Insertion& i : all) i.transfer_base(a);
 }
 
 void Insertions::transfer(io::Archive& a)

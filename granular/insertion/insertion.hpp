@@ -22,6 +22,22 @@ public:
     explicit InsertionBlocked(const std::string& what) : NumericalFailure("insertion_blocked", what) {}
 };
 
+/// Amounts and velocities of an insertion from a time on. A change of the run begins another flow.
+struct InsertionFlow {
+    double rate = 0, mass_rate = 0;                       ///< one of the two is positive, or none [1/s, kg/s]
+    double to = std::numeric_limits<double>::infinity();  ///< [s]
+    Vec3 v = {0, 0, 0};                                   ///< [m/s]
+    double random_v = 0;  ///< magnitude of an added velocity of random direction [m/s]
+    bool active = true;   ///< otherwise nothing is inserted
+
+    double since = 0;             ///< begin of the flow [s]
+    double number = 0, mass = 0;  ///< that are due from earlier flows, with fractions of a particle [, kg]
+
+    /// Whether the flow has the same values in the case
+    bool has_values_of(const InsertionFlow& o) const;
+    void transfer(io::Archive& a);
+};
+
 /// An entry of `insert`
 struct InsertionSpec {
     static constexpr std::int64_t no_limit = std::numeric_limits<std::int64_t>::max();
@@ -29,27 +45,23 @@ struct InsertionSpec {
     std::string name;
     InsertionRegion region;
     Sizes sizes;
-    double rate = 0, mass_rate = 0;  ///< one of the two is positive, or none [1/s, kg/s]
-    std::int64_t count = no_limit;   ///< largest number of particles; without a rate all are due at `from`
-    double from = 0, to = std::numeric_limits<double>::infinity();  ///< [s]
-    long first_step = 0, interval = 1;                              ///< of the insertions [steps]
-    Vec3 v = {0, 0, 0};                                             ///< [m/s]
-    double random_v = 0;  ///< magnitude of an added velocity of random direction [m/s]
+    InsertionFlow flow;                 ///< at the start of the run
+    std::int64_t count = no_limit;      ///< largest number of particles; without a rate all are due at `from`
+    double from = 0;                    ///< [s]
+    long first_step = 0, interval = 1;  ///< of the insertions [steps]
     int material = 0;
     double density = 0;  ///< [kg/m³]
     std::uint16_t replica = 0;
     bool postpones = true;     ///< a particle that finds no place waits for the next insertion
     long most_tries = 100000;  ///< positions in turn without place, after which the run ends
     std::uint64_t seed = 1;
-    bool active = true;  ///< otherwise nothing is inserted
     int group = Groups::none;
 
     static constexpr long tries_at_once = 200;  ///< positions that are tried for a particle in one insertion
 
-    /// Number of particles that are due until t, or their mass [kg] with a mass_rate
-    double due(double t) const { return due(t, from); }
-    /// The same of the amounts since a later time than `from`
-    double due(double t, double since) const;
+    /// Number of particles that are due until t, with a fraction, or their mass [kg] with a mass_rate
+    double due(const InsertionFlow& of, double t) const;
+    double mean_mass() const;  ///< of a particle [kg]
     /// Largest number of particles until t; with a mass rate an estimate from above
     double largest_count(double t) const;
     /// A particle with a radius, without a place
@@ -76,26 +88,12 @@ public:
     double mass() const { return state.mass; }          ///< of all inserted particles [kg]
     void transfer(io::Archive& a);
 
-    /// Takes the amounts, velocities and `active` of another entry.
-    void set_flow(const InsertionSpec& of);
-    /// After set_flow() at the time t: the new amounts are due from this time on, besides those that were due
-    /// until then. Without effect if amounts and `active` are as before.
-    void restart(double t);
-    /// Transfers the time of restart(), which is not part of transfer().
-    void transfer_base(io::Archive& a);
-    bool is_restarted() const { return base.is_set; }
+    /// From the time t on the flow has the values of another one. What was due until then stays due: between
+    /// a number and a mass it is converted by the mean mass of a particle. Without effect if the values are
+    /// the same.
+    void begin_flow(const InsertionFlow& of, double t);
 
 private:
-    /// Time of the last restart() [s], and what was due until then [, kg]
-    struct Base {
-        bool is_set = false;
-        double t = 0;
-        std::int64_t count = 0;
-        double mass = 0;
-    };
-    /// Number of particles that are due until t, or their mass [kg] with a mass_rate
-    double due(const InsertionSpec& of, double t) const;
-
     /// Written to checkpoints as bytes, without padding
     struct State {
         std::uint64_t random = 0;  ///< state of the random numbers
@@ -109,9 +107,9 @@ private:
     bool is_due(const State& now, double t) const;
     [[noreturn]] void throw_blocked(const State& now, double t) const;
 
-    InsertionSpec spec, before;  ///< before: the last set_flow()
+    InsertionSpec spec;
+    InsertionFlow flow;  ///< part of the state
     State state;
-    Base base;
 };
 
 /// All insertions of a case
@@ -125,9 +123,6 @@ struct Insertions {
     /// outlives the world.
     void start(World& world, double t);
     void transfer(io::Archive& a);
-    /// Whether an insertion was started again; then transfer_bases() has to be called as well.
-    bool is_restarted() const;
-    void transfer_bases(io::Archive& a);
 };
 
 /// Reads an entry of `insert`, without material and replica, of a case with a step h and gravity [s, m/s²].

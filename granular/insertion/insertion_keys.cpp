@@ -22,12 +22,13 @@ long steps_in(ObjectReader& o, const char* key, double time, double h, long leas
 
 void read_amount(ObjectReader& o, InsertionSpec& s)
 {
-    if (o.has("rate")) s.rate = o.positive("rate");
-    if (o.has("mass_rate")) s.mass_rate = o.positive("mass_rate");
-    if (s.rate > 0 && s.mass_rate > 0) o.fail("mass_rate", "mass_rate must not be given together with rate");
+    if (o.has("rate")) s.flow.rate = o.positive("rate");
+    if (o.has("mass_rate")) s.flow.mass_rate = o.positive("mass_rate");
+    if (s.flow.rate > 0 && s.flow.mass_rate > 0)
+        o.fail("mass_rate", "mass_rate must not be given together with rate");
     if (o.has("count")) s.count = o.count("count");
     if (s.count == 0) o.fail("count", "count must be positive, got 0");
-    if (s.rate == 0 && s.mass_rate == 0 && s.count == InsertionSpec::no_limit)
+    if (s.flow.rate == 0 && s.flow.mass_rate == 0 && s.count == InsertionSpec::no_limit)
         o.fail("one of the keys rate, mass_rate and count is required");
 }
 
@@ -42,14 +43,14 @@ InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h,
     s.region = read_region(o.object("region"), R);
     read_amount(o, s);
     s.from = o.not_negative("from", 0);
-    if (o.has("to")) s.to = o.number("to");
-    if (o.has("to") && s.rate == 0 && s.mass_rate == 0)
+    if (o.has("to")) s.flow.to = o.number("to");
+    if (o.has("to") && s.flow.rate == 0 && s.flow.mass_rate == 0)
         o.fail("to", "to must be given together with rate or mass_rate only");
-    if (!(s.to > s.from))
-        o.fail("to", "to must be after from, " + io::shortest(s.from) + ", got " + io::shortest(s.to));
-    s.v = o.vec3("v", Vec3{0, 0, 0});
-    s.random_v = o.not_negative("random_v", 0);
-    const double speed = s.v.norm(), g = gravity.norm();
+    if (!(s.flow.to > s.from))
+        o.fail("to", "to must be after from, " + io::shortest(s.from) + ", got " + io::shortest(s.flow.to));
+    s.flow.v = o.vec3("v", Vec3{0, 0, 0});
+    s.flow.random_v = o.not_negative("random_v", 0);
+    const double speed = s.flow.v.norm(), g = gravity.norm();
     std::optional<double> interval;
     if (speed + g > 0) interval = time_to_move(2 * R, speed, g);
     s.first_step = steps_in(o, "from", s.from, h, 0);
@@ -58,7 +59,7 @@ InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h,
     s.most_tries = o.count("tries", s.most_tries);
     if (s.most_tries < InsertionSpec::tries_at_once)
         o.fail("tries", "tries must be at least 200, got " + std::to_string(s.most_tries));
-    s.active = o.flag("active", true);
+    s.flow.active = o.flag("active", true);
     s.seed = static_cast<std::uint64_t>(o.count("seed", 1));
     return s;
 }

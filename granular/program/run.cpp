@@ -376,8 +376,8 @@ private:
         });
     }
     /// The parts of the state that only some runs have, beside those of the sinks
-    static constexpr const char *changes_part = "run.changes", *insertions_part = "run.insertions",
-                                *stages_part = "run.stages", *groups_part = "run.groups";
+    static constexpr const char *changes_part = "run.changes", *stages_part = "run.stages",
+                                *groups_part = "run.groups";
     template <class F>
     static void read_part(const io::Sinks<CaseSetup>::Saved& parts, const char* part, const std::string& file,
                           const F& read)
@@ -399,14 +399,10 @@ private:
         };
         add(c.stages != nullptr, stages_part, [&](io::Archive& a) { c.stages->transfer(a); });
         add(grows_groups(), groups_part, [&](io::Archive& a) { c.groups->transfer(a); });
-        add(c.insertions != nullptr && c.insertions->is_restarted(), insertions_part,
-            [&](io::Archive& a) { c.insertions->transfer_bases(a); });
     }
     void read_parts(const io::Sinks<CaseSetup>::Saved& parts, const std::string& file)
     {
         if (const auto at = parts.find(changes_part); at != parts.end()) history.read(at->second, file);
-        if (c.insertions != nullptr && parts.contains(insertions_part))
-            read_part(parts, insertions_part, file, [&](io::Archive& a) { c.insertions->transfer_bases(a); });
         if (grows_groups())
             read_part(parts, groups_part, file, [&](io::Archive& a) { c.groups->transfer(a); });
         if (c.stages == nullptr) return;

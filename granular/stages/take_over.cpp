@@ -145,9 +145,6 @@ void take_over(Case& c, const Case& changed, const std::vector<std::string>& poi
     if (includes(pointers, "/gravity")) c.world->set_gravity(changed.world->gravity());
     if (includes(pointers, "/laws")) c.world->set_laws(changed.world->all_laws());
     take_over_motions(c, changed, pointers, start);
-    if (c.insertions == nullptr) return;
-    for (std::size_t k = 0; k < c.insertions->all.size(); ++k)
-        c.insertions->all[k].set_flow(changed.insertions->all[k].what());
 }
 
 void begin_change(Case& c, const Case& changed, const std::vector<std::string>& pointers)
@@ -157,8 +154,7 @@ void begin_change(Case& c, const Case& changed, const std::vector<std::string>& 
     set_numbers(c, changed, pointers);
     if (c.insertions != nullptr)
         for (std::size_t k = 0; k < c.insertions->all.size(); ++k)
-            if (includes(pointers, "/insert/" + std::to_string(k)))
-                c.insertions->all[k].restart(c.world->t());
+            c.insertions->all[k].begin_flow(changed.insertions->all[k].what().flow, c.world->t());
     c.world->start_balance();
 }
 

@@ -7,13 +7,13 @@
 
 namespace hilda::granular {
 
-/// Gives the world and the insertions of `c` the parameters that `changed` has at these pointers. `changed`
+/// Gives the world of `c` the parameters that `changed` has at these pointers. `changed`
 /// has the same materials, laws, boundaries and insertions, and was read without particles. `start` is the
 /// time t = 0 of its formulas [s]. Throws io::PlacedError at the entry of `changed` if a law is another one.
 void take_over(Case& c, const Case& changed, const std::vector<std::string>& pointers, double start = 0);
 
 /// At the instant of a change, after take_over() with the same arguments: sets the velocities, forces and
-/// torques that are numbers, starts the insertions again whose amounts have changed, and begins the balance
+/// torques that are numbers, begins the flows of insertions that have changed, and begins the balance
 /// of the watch again. Throws io::PlacedError at the entry of `changed` if a boundary is not at the place of
 /// its new formula.
 void begin_change(Case& c, const Case& changed, const std::vector<std::string>& pointers);

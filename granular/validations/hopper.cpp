@@ -110,11 +110,11 @@ Flow discharge(const std::vector<BedSphere>& bed, double outlet, double refill,
     Insertions insertions;
     if (refill > 0) {
         InsertionSpec s;
-        s.name = "refill", s.density = glass().density, s.mass_rate = refill;
+        s.name = "refill", s.density = glass().density, s.flow.mass_rate = refill;
         s.sizes = Sizes({{0.5 * d * (1 - spread), 0.5 * d * (1 + spread), 1}}, Share::of_number);
         s.region.shape = InsertionRegion::Shape::disk, s.region.r = {0, 0, top},
         s.region.radius = wall - 0.1 * d;
-        s.v = {0, 0, -0.3}, s.interval = 400;
+        s.flow.v = {0, 0, -0.3}, s.interval = 400;
         insertions.all.emplace_back(s);
         insertions.start(world, flow_end);
     }

@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 15};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 16};
 
 /// Refuses the first element of the list that was read last which is not finite.
 template <class Array>

@@ -134,6 +134,36 @@ def closed_forms(runs):
     expect(abs(float(row["wall_z"]) - (0.1 * 0.01 - 0.3 * 0.01)) < 1e-12 and float(row["wall_vz"]) == -0.3, f"the wall: {row}")
 
 
+def flows(runs):
+    """The particles that are due from a sequence of changes of an insertion, in closed form"""
+    feed = dict(CUP["insert"][0], rate=250)
+    space = dict(CUP, gravity=[0, 0, 0], fill=[], boundaries=[], domain=CASE["domain"])
+    case = runs.case("flows", **dict(space, insert=[dict(feed, v=[0, 0, 0], interval=1e-3)]))
+    end, due = 0.01, 2.5
+    runs.finish(case, "--output", "flows")
+    # the rate goes to another value and back, and so do the time of the end and the switch
+    for changes, rate, until in (((("rate", 550),), 550, 1), ((("rate", 250),), 250, 1), ((("rate", 550),), 550, 1),
+                                 ((("to", 0.043),), 550, 0.043), ((("to", 1),), 550, 1), ((("to", 0.043),), 550, 0.043), ((("to", 1),), 550, 1),
+                                 ((("active", "false"),), 0, 1), ((("active", "true"), ("rate", 250)), 250, 1), ((("rate", 550),), 550, 1)):
+        due += rate * max(0, min(end + 0.01, until) - end)
+        end = round(end + 0.01, 2)
+        runs.finish(case, "--output", "flows", "--resume", "--end", str(end), *(
+            option for key, value in changes for option in ("--set", f"/insert/0/{key}={value}")))
+        inserted = int(table(runs, "flows")[-1]["inserted"])
+        # the particles of the interval of the insertions before the end may be missing
+        expect(due - 1 - 550 * 1.1e-3 < inserted <= due + 1e-6, f"{inserted} particles until {end} s, {due} are due")
+    runs.finish(case, "--output", "flows", "--resume", "--end", str(end + 0.01), "--set", "/insert/0/rate=1e-9")
+    inserted = int(table(runs, "flows")[-1]["inserted"])
+    expect(inserted == int(due + 1e-6), f"{inserted} particles in all, {due} are due")
+    # only the velocity changes: the number goes on, and the particles have the velocity of their time
+    fall = runs.case("fall", **dict(space, insert=[feed]))
+    runs.finish(fall, "--output", "fall")
+    for speed, end in ((2, 0.02), (1, 0.03)):
+        runs.finish(fall, "--output", "fall", "--resume", "--end", str(end), "--set", f"/insert/0/v=[0,0,{speed}]")
+    speeds = sorted(round(float(row["vz"]), 6) for row in table(runs, "fall", "particles.csv"))
+    expect(speeds == [-1] * 2 + [1] * 3 + [2] * 2, f"velocities: {speeds}")
+
+
 def refused(runs):
     """Entries that cannot change, and changes that do not continue the state"""
     case = runs.case("cup", **CUP)
@@ -169,6 +199,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
         closed_forms(runs)
+        flows(runs)
         refused(runs)
         one_result(runs)
     print("changes by --set and by a file, one result with interruptions, closed forms, refusals")

@@ -15,6 +15,7 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::Insertion;
 using granular::InsertionBlocked;
+using granular::InsertionFlow;
 using granular::InsertionRegion;
 using granular::Insertions;
 using granular::InsertionSpec;
@@ -146,20 +147,20 @@ TEST_CASE("particles are inserted at their rate, without contact, between two ti
     World world = with_law(o);
     Insertions insertions;
     InsertionSpec s = in_box({0.01, 0.01, 0.01}, {0.03, 0.03, 0.03});
-    s.rate = 2e4, s.from = 1e-3, s.to = 6e-3, s.first_step = 100, s.interval = 50;
-    s.v = {0, 0, -1};
+    s.flow.rate = 2e4, s.from = 1e-3, s.flow.to = 6e-3, s.first_step = 100, s.interval = 50;
+    s.flow.v = {0, 0, -1};
     insertions.all.emplace_back(s);
     insertions.start(world, 1);
     for (int k = 0; k <= 1000; ++k) {
         // before the steps 100, 150, ... the particles are inserted that are due until then
-        const double until = std::min((k - 1) / 50 * 50 * o.h, s.to);
-        const auto due = k > 100 ? std::lround(s.rate * (until - s.from)) : 0;
+        const double until = std::min((k - 1) / 50 * 50 * o.h, s.flow.to);
+        const auto due = k > 100 ? std::lround(s.flow.rate * (until - s.from)) : 0;
         REQUIRE(world.count() == static_cast<std::size_t>(due));
         REQUIRE(insertions.count() == due);
         world.step();
     }
     CHECK(insertions.mass() == Approx(100 * sphere_mass(R)).epsilon(1e-7));
-    for (const Particle& p : world.particles()) CHECK((p.v == s.v && p.radius == static_cast<float>(R)));
+    for (const Particle& p : world.particles()) CHECK((p.v == s.flow.v && p.radius == static_cast<float>(R)));
     CHECK(world.watch().largest_overlap == 0);
 }
 
@@ -168,15 +169,15 @@ TEST_CASE("a random velocity has the given magnitude and no preferred direction"
     World world = with_law(options());
     Insertions insertions;
     InsertionSpec s = in_box({0.001, 0.001, 0.001}, {0.039, 0.039, 0.039});
-    s.count = 800, s.v = {0, 0, -1}, s.random_v = 0.2;
+    s.count = 800, s.flow.v = {0, 0, -1}, s.flow.random_v = 0.2;
     insertions.all.emplace_back(s);
     insertions.start(world, 1);
     world.step();
     REQUIRE(world.count() == 800);
     Vec3 mean{0, 0, 0};
     for (const Particle& p : world.particles()) {
-        REQUIRE((p.v - s.v).norm() == Approx(0.2).epsilon(1e-6));
-        mean += (1. / 800) * (p.v - s.v);
+        REQUIRE((p.v - s.flow.v).norm() == Approx(0.2).epsilon(1e-6));
+        mean += (1. / 800) * (p.v - s.flow.v);
     }
     CHECK(mean.norm() < 4 * 0.2 / std::sqrt(800.));
 }
@@ -187,12 +188,12 @@ TEST_CASE("the inserted mass follows a mass rate to half a particle", "[granular
     Insertions insertions;
     InsertionSpec s = in_box({0.001, 0.001, 0.001}, {0.039, 0.039, 0.039});
     s.sizes = Sizes({{5e-4, 1.5e-3, 1}}, Share::of_mass);
-    s.mass_rate = 0.05, s.interval = 100, s.count = 500;
+    s.flow.mass_rate = 0.05, s.interval = 100, s.count = 500;
     insertions.all.emplace_back(s);
     insertions.start(world, 1);
     for (int k = 0; k < 20; ++k) {
         world.step(100);
-        CHECK(std::abs(insertions.mass() - s.mass_rate * 100 * k * 1e-5) <= sphere_mass(1.5e-3) / 2);
+        CHECK(std::abs(insertions.mass() - s.flow.mass_rate * 100 * k * 1e-5) <= sphere_mass(1.5e-3) / 2);
     }
     CHECK(insertions.count() > 50);
     CHECK(static_cast<double>(insertions.count()) <= s.largest_count(19 * 1e-3));
@@ -221,7 +222,7 @@ TEST_CASE("an insertion does not change the other particles by a bit", "[granula
                 .omega = {1. * k, 2, 3}});
         Insertions insertions;
         InsertionSpec s = in_box({0.02, 0.02, 0.02}, {0.038, 0.038, 0.038});
-        s.count = count, s.first_step = 37, s.rate = 1e4, s.from = 37e-5, s.interval = 31;
+        s.count = count, s.first_step = 37, s.flow.rate = 1e4, s.from = 37e-5, s.interval = 31;
         insertions.all.emplace_back(s);
         insertions.start(world, 1);
         world.step(500);
@@ -324,7 +325,7 @@ TEST_CASE("inserted mass is the mass inside and the mass that has left, also aft
         {
             InsertionSpec s = in_box({0.001, 0.001, 0.005}, {0.03, 0.03, 0.012});
             s.sizes = Sizes({{5e-4, 1e-3, 1}}, Share::of_mass);
-            s.rate = 5000, s.interval = 70, s.v = {0, 0, -0.5}, s.random_v = 0.3;
+            s.flow.rate = 5000, s.interval = 70, s.flow.v = {0, 0, -0.5}, s.flow.random_v = 0.3;
             insertions.all.emplace_back(s);
             insertions.start(world, 1);
         }
@@ -349,4 +350,58 @@ TEST_CASE("inserted mass is the mass inside and the mass that has left, also aft
     CHECK(whole.insertions.count() == 199);
     CHECK(std::abs(whole.balance()) < 1e-14 * whole.insertions.mass());
     CHECK(whole.save() == restored.save());
+}
+
+TEST_CASE("what is due from a sequence of flows is the sum of their amounts, also after a restart",
+          "[granular][insertion]")
+{
+    const auto o = options();
+    InsertionSpec s = in_box({0.001, 0.001, 0.001}, {0.039, 0.039, 0.039});
+    struct Feed {
+        World world;
+        Insertions insertions;
+        Feed(const WorldOptions& options, const InsertionSpec& spec) : world(with_law(options))
+        {
+            insertions.all.emplace_back(spec);
+            insertions.start(world, 1);
+        }
+        void begin(const InsertionFlow& flow) { insertions.all[0].begin_flow(flow, world.t()); }
+        std::string save()
+        {
+            return world.to_bytes("run", [&](io::Archive& a) { insertions.transfer(a); });
+        }
+    };
+    const auto by_rate = [](double rate) {
+        InsertionFlow flow;
+        flow.rate = rate;
+        return flow;
+    };
+    InsertionFlow off = by_rate(700), until = by_rate(700), by_mass;
+    off.active = false, until.to = 15e-4, by_mass.mass_rate = 700 * s.mean_mass();
+    const double t = 1e-3;  // of each flow [s]
+    // flows, and the number of particles that are due from each
+    const std::vector<std::pair<InsertionFlow, double>> sequences[] = {
+        {{by_rate(700), 0.7}, {by_rate(2400), 2.4}, {by_rate(700), 0.7}, {by_rate(2400), 2.4}},
+        {{by_rate(700), 0.7}, {off, 0}, {by_rate(700), 0.7}, {off, 0}, {by_rate(2400), 2.4}},
+        {{by_rate(700), 0.7}, {until, 0.35}, {by_rate(700), 0.7}, {until, 0}, {by_rate(2400), 2.4}},
+        {{by_rate(700), 0.7}, {by_mass, 0.7}, {by_rate(700), 0.7}, {by_mass, 0.7}, {by_rate(2400), 2.4}}};
+    for (const auto& sequence : sequences) {
+        s.flow = sequence[0].first;
+        Feed feed(o, s);
+        double due = 0;
+        for (const auto& [flow, number] : sequence) {
+            feed.begin(flow);
+            feed.world.step(std::lround(t / o.h));
+            Feed restored(o, s);
+            restored.world.step(0);
+            restored.world.from_bytes(feed.save(), "run", "file",
+                                      [&](io::Archive& a) { restored.insertions.transfer(a); });
+            CHECK(restored.save() == feed.save());
+            due += number;
+            feed.begin(by_rate(0.5 * flow.rate + 1)), feed.begin(flow);  // at the same time: no effect
+        }
+        feed.begin(by_rate(1e-9));
+        feed.world.step();
+        CHECK(feed.insertions.count() == static_cast<std::int64_t>(std::floor(due + 1e-9)));
+    }
 }

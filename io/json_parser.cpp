@@ -223,10 +223,12 @@ private:
                          [&](std::size_t a, std::size_t b) { return object[a].key < object[b].key; });
         for (std::size_t k = 1; k < order.size(); ++k) {
             const Json::Member &first = object[order[k - 1]], &second = object[order[k]];
-            if (first.key == second.key)
-                throw PlacedError(source.place(second.offset, pointer_to(pointer(), second.key)) +
-                                  ": the key " + in_quotes(second.key) + " is given twice; first at " +
-                                  source.place(first.offset, ""));
+            if (first.key == second.key) {
+                const std::string at = pointer_to(pointer(), second.key);
+                throw PlacedError(source.place(second.offset, at), at,
+                                  "the key " + in_quotes(second.key) + " is given twice; first at " +
+                                      source.place(first.offset, ""));
+            }
         }
     }
 
@@ -261,7 +263,7 @@ private:
 
     [[noreturn]] void fail(std::size_t where, const std::string& what) const
     {
-        throw PlacedError(source.place(where, pointer()) + ": " + what);
+        throw PlacedError(source.place(where, pointer()), pointer(), what);
     }
 
     // syntax errors

@@ -153,7 +153,7 @@ void JsonSource::set(const std::string& requested, const std::string& option)
         *at = value_of_change(change.substr(equals + 1));
         set_location(*at, offset, static_cast<std::int32_t>(origins.size()));
     } catch (const InvalidInput& e) {
-        fail(*at, pointer, origin + ": " + e.what());
+        throw PlacedError(place(at->offset, pointer) + ": " + origin, pointer, e.what(), from(*at));
     }
     changes.push_back(change);
     origins.push_back(origin);
@@ -229,9 +229,13 @@ std::string JsonSource::place(std::size_t offset, const std::string& pointer) co
 
 void JsonSource::fail(const Json& at, const std::string& pointer, const std::string& what) const
 {
-    const std::string from =
-        at.change < 0 ? "" : " (from " + origins[static_cast<std::size_t>(at.change)] + ")";
-    throw PlacedError(place(at.offset, pointer) + ": " + what + from);
+    throw PlacedError(place(at.offset, pointer), pointer, what, from(at));
+}
+
+/// " (from ORIGIN)" of a value that a change has given, otherwise ""
+std::string JsonSource::from(const Json& at) const
+{
+    return at.change < 0 ? "" : " (from " + origins[static_cast<std::size_t>(at.change)] + ")";
 }
 
 void JsonSource::fail(const std::string& pointer, const std::string& what) const

@@ -12,7 +12,14 @@ namespace hilda::io {
 /// Invalid input with its location. what() begins with "FILE:LINE:COL (/json/pointer): ".
 class PlacedError : public InvalidInput {
 public:
-    using InvalidInput::InvalidInput;
+    PlacedError(const std::string& place, std::string json_pointer, std::string what_is_wrong,
+                const std::string& origin = "")
+        : InvalidInput(place + ": " + what_is_wrong + origin), pointer(std::move(json_pointer)),
+          reason(std::move(what_is_wrong))
+    {}
+
+    std::string pointer;  ///< of the invalid entry; "": the whole text
+    std::string reason;   ///< what is wrong, without the location and the option that gave the value
 };
 
 /// Named constants of a text. Where a number is expected, a string is an expression in their names.
@@ -82,6 +89,7 @@ private:
 
     const Json& find(const std::string& pointer) const;
     void notice(const std::string& pointer, const Renamed& key);
+    std::string from(const Json& at) const;
 
     std::string text, file;
     /// Number of UTF-8 characters before this byte of the text

@@ -276,3 +276,26 @@ TEST_CASE("the place of a value in the text is found by its pointer", "[io][json
     for (const auto& [pointer, place] : places)
         CHECK(source.place(pointer) == "f:" + place + " (" + (pointer.empty() ? "/" : pointer) + ")");
 }
+
+TEST_CASE("an error has the pointer of its entry and the reason without the location", "[io][json]")
+{
+    const auto pointer_and_reason = [](const auto& f) {
+        try {
+            f();
+        } catch (const io::PlacedError& e) {
+            CHECK_THAT(e.what(), Catch::Contains(e.reason));
+            return e.pointer + " | " + e.reason;
+        }
+        return std::string("no error");
+    };
+    JsonSource source(R"({"a": {"b (c): d": [1, 2]}})", "f (x): y");
+    CHECK(pointer_and_reason([&] { source.fail("/a/b (c): d/1", "it (z): is wrong"); }) ==
+          "/a/b (c): d/1 | it (z): is wrong");
+    CHECK(pointer_and_reason([&] { source.set("/a/e/g=3", "option"); }) ==
+          "/a | there is no \"e\" in an object of 1 key");
+    source.set("/a/k=7", "option");
+    CHECK(pointer_and_reason([&] { source.fail("/a/k", "it is wrong"); }) == "/a/k | it is wrong");
+    CHECK(pointer_and_reason([] { parsed(R"({"a": 1, "a": 2})"); }) ==
+          "/a | the key \"a\" is given twice; first at f:1:2 (/)");
+    CHECK(pointer_and_reason([] { parsed("{} 3"); }).starts_with(" | "));
+}

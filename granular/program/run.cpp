@@ -7,7 +7,6 @@
 #include "granular/program/watch_report.hpp"
 #include "granular/stages/change_history.hpp"
 #include "granular/stages/stages.hpp"
-#include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -179,7 +178,7 @@ private:
     void begin_change()
     {
         const World& w = *c.world;
-        granular::begin_change(c, *from.changed, from.pointers);
+        granular::begin_change(c, from.changed, from.pointers);
         std::string all;
         for (const std::string& change : from.changes) all += (all.empty() ? "" : "; ") + change;
         history.all.push_back({.t = w.t(),

@@ -2,7 +2,6 @@
 #include "granular/stages/case_changes.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace hilda::granular {
 
@@ -58,10 +57,40 @@ bool is_formula(const io::Json* value)
                        [](const io::Json& part) { return part.string() != nullptr; });
 }
 
-template <std::size_t n>
-bool contains(const std::array<const char*, n>& names, const std::string& name)
+/// Keys that can change during a run
+struct Changeable {
+    const char* list;  ///< whose entries have the keys; "": the case
+    std::vector<std::string> keys;
+    std::vector<ChangeIn> where;
+};
+
+/// A note can change everywhere. Of laws all keys can change with which the laws remain the same:
+/// check_parameters() refuses others.
+const std::vector<Changeable>& all_changeable()
 {
-    return std::find(names.begin(), names.end(), name) != names.end();
+    using enum ChangeIn;
+    static const std::vector<Changeable> all = {
+        {"", {"name", "note", "end", "interval"}, {resumed_run, resumed_stages}},
+        {"", {"gravity"}, {resumed_run, stage}},
+        {"boundaries", {"r", "v", "omega", "F", "T"}, {resumed_run, stage}},
+        {"laws", {}, {resumed_run, stage}},
+        {"insert", {"rate", "mass_rate", "to", "v", "random_v", "active"}, {resumed_run, stage}}};
+    return all;
+}
+
+template <class T>
+bool contains(const std::vector<T>& all, const T& one)
+{
+    return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// The elements as "a, b and c"
+std::string enumeration(const std::vector<std::string>& all)
+{
+    std::string text;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        text += (k == 0 ? "" : k + 1 < all.size() ? ", " : " and ") + all[k];
+    return text;
 }
 
 }  // namespace
@@ -76,23 +105,44 @@ std::string CaseChange::text() const
     return (pointer.empty() ? "/" : pointer) + " was " + shown(was) + " and is " + shown(is) + " now";
 }
 
-bool CaseChange::is_possible() const
+bool CaseChange::is_possible(ChangeIn where) const
 {
-    constexpr std::array of_case = {"name", "gravity", "end", "interval", "$schema"};
-    constexpr std::array of_boundary = {"v", "omega", "F", "T"};
-    constexpr std::array of_insertion = {"rate", "mass_rate", "to", "v", "random_v", "active"};
     const std::vector<std::string> at = tokens_of(pointer);
     if (at.empty()) return false;
-    if (at.back() == "note") return true;
-    if (at.size() == 1) return contains(of_case, at[0]);
-    if (at.size() < 3) return false;
-    const std::string& key = at[2];
-    // Numbers of r are the place at the start; a formula continues from the present place.
-    if (at[0] == "boundaries")
-        return contains(of_boundary, key) || (key == "r" && (is_formula(is) || is_formula(was)));
-    // take_over() refuses other laws that are stated by other keys.
-    if (at[0] == "laws") return key != "between" && at.back() != "law";
-    return at[0] == "insert" && contains(of_insertion, key);
+    if (where != ChangeIn::stage && (at.back() == "note" || pointer == "/$schema")) return true;
+    if (at.size() == 2) return false;
+    const std::string list = at.size() == 1 ? "" : at[0], &key = at.size() == 1 ? at[0] : at[2];
+    for (const Changeable& c : all_changeable()) {
+        if (c.list != list || !contains(c.where, where)) continue;
+        if (!list.empty() && at.back() == "note") return true;
+        if (list == "laws") return key != "between" && at.back() != "law";
+        // Numbers of r are the place at the start; a formula continues from the present place.
+        if (contains(c.keys, key))
+            return list != "boundaries" || key != "r" || is_formula(is) || is_formula(was);
+    }
+    return false;
+}
+
+std::string changeable_entries(ChangeIn where)
+{
+    std::vector<std::string> of_case, others;
+    for (const Changeable& c : all_changeable()) {
+        if (!contains(c.where, where)) continue;
+        const std::string list = c.list;
+        if (list.empty())
+            of_case.insert(of_case.end(), c.keys.begin(), c.keys.end());
+        else if (list == "laws")
+            others.emplace_back("the numbers of laws");
+        else
+            others.push_back(enumeration(c.keys) + " of " + (list == "insert" ? "insertions" : list));
+    }
+    std::string text = where == ChangeIn::stage            ? "a stage can set "
+                       : where == ChangeIn::resumed_stages ? "a run with stages can change "
+                                                           : "a run can change ";
+    text += enumeration(of_case);
+    for (std::size_t k = 0; k < others.size(); ++k)
+        text += (k + 1 < others.size() ? "; " : "; and ") + others[k];
+    return text;
 }
 
 std::vector<CaseChange> changes_of(const io::Json& before, const io::Json& now)

@@ -10,6 +10,13 @@
 
 namespace hilda::granular {
 
+/// Where an entry of a case changes
+enum class ChangeIn {
+    resumed_run,
+    resumed_stages,  ///< a resumed run that has stages
+    stage
+};
+
 /// An entry of a case that another case has with another value, or does not have
 struct CaseChange {
     std::string pointer;
@@ -17,18 +24,15 @@ struct CaseChange {
 
     /// "POINTER was A and is B now"
     std::string text() const;
-    /// Whether a run can continue with the new value: see changeable_entries
-    bool is_possible() const;
+    /// Whether the run can continue with the new value: see changeable_entries()
+    bool is_possible(ChangeIn where) const;
 };
 
 /// The entries in which two trees differ, in the order of the first one. The trees outlive the result. Lists
 /// of numbers and texts, and lists of different lengths, are compared as a whole.
 std::vector<CaseChange> changes_of(const io::Json& before, const io::Json& now);
 
-/// What a continued run may change, for messages
-inline constexpr const char* changeable_entries =
-    "a run can change name, note, gravity, end and interval; r, v, omega, F and T of boundaries; the numbers "
-    "of "
-    "laws; and rate, mass_rate, to, v, random_v and active of insertions";
+/// The entries that can change, for messages: "a run can change name, note, ..."
+std::string changeable_entries(ChangeIn where);
 
 }  // namespace hilda::granular

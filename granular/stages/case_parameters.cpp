@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/stages/take_over.hpp"
+#include "granular/stages/case_parameters.hpp"
 
 #include "granular/core/rigid_body.hpp"
 #include "io/message.hpp"
@@ -22,14 +22,14 @@ std::string entry_of(const Case& c, int boundary)
     return "/boundaries/" + std::to_string(c.entry_of_boundary[static_cast<std::size_t>(boundary)]);
 }
 
-/// The motion of a boundary; one without formulas is added if there is none.
-BoundaryMotion& motion_of(Case& c, int boundary)
+/// The motion of a boundary; one without formulas if there is none
+BoundaryMotion motion_of(const std::vector<BoundaryMotion>& motions, const Case& c, int boundary)
 {
-    for (BoundaryMotion& m : *c.motions)
+    for (const BoundaryMotion& m : motions)
         if (m.boundary == boundary) return m;
     BoundaryMotion none;
     none.boundary = boundary, none.name = c.boundaries[static_cast<std::size_t>(boundary)];
-    return c.motions->emplace_back(std::move(none));
+    return none;
 }
 
 std::optional<VectorFormula> from(double start, std::optional<VectorFormula> f)
@@ -46,22 +46,23 @@ constexpr std::pair<const char*, std::optional<VectorFormula> BoundaryMotion::*>
     {"F", &BoundaryMotion::F},
     {"T", &BoundaryMotion::T}};
 
-void take_over_motions(Case& c, const Case& changed, const std::vector<std::string>& pointers, double start)
+void set_motions(Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers,
+                 double start)
 {
-    BoundaryMotion none;
-    for (int b = 0; b < static_cast<int>(c.boundaries.size()); ++b)
-        for (const auto& [key, formula] : keys_of_motion) {
-            if (!includes(pointers, entry_of(c, b) + '/' + key)) continue;
-            const BoundaryMotion* now = &none;
-            for (const BoundaryMotion& m : *changed.motions)
-                if (m.boundary == b) now = &m;
-            motion_of(c, b).*formula = from(start, now->*formula);
-        }
+    std::vector<BoundaryMotion> all;
+    for (int b = 0; b < static_cast<int>(c.boundaries.size()); ++b) {
+        BoundaryMotion m = motion_of(*c.motions, c, b);
+        const BoundaryMotion now = motion_of(changed.motions, c, b);
+        for (const auto& [key, formula] : keys_of_motion)
+            if (includes(pointers, entry_of(c, b) + '/' + key)) m.*formula = from(start, now.*formula);
+        if (m.is_prescribed()) all.push_back(std::move(m));
+    }
+    *c.motions = std::move(all);  // the world has the address of the list
 }
 
-void check_laws(const Case& c, const Case& changed)
+void check_laws(const Case& c, const CaseParameters& changed)
 {
-    const std::vector<PairLaw>&before = c.world->all_laws(), &now = changed.world->all_laws();
+    const std::vector<PairLaw>&before = c.world->all_laws(), &now = changed.laws;
     for (std::size_t k = 0; k < now.size(); ++k) {
         const PairLaw &a = before[k], &b = now[k];
         for (const auto& [kind, is_same] : {std::pair{"normal", a.normal.is_same_law(b.normal)},
@@ -70,14 +71,14 @@ void check_laws(const Case& c, const Case& changed)
                                             {"spin", a.spin.is_same_law(b.spin)},
                                             {"cohesion", a.cohesion.is_same_law(b.cohesion)}})
             if (!is_same)
-                changed.source.fail(
+                c.source.fail(
                     "/laws/" + std::to_string(k) + '/' + kind,
                     std::string("the ") + kind + " law must be that of the run, only its numbers can change");
     }
 }
 
 /// Throws io::PlacedError if a boundary is not where its new formula begins.
-void check_place(const Case& c, const Case& changed, const BoundaryMotion& m)
+void check_place(const Case& c, const BoundaryMotion& m)
 {
     const World& w = *c.world;
     const Boundary& b = w.all_boundaries()[static_cast<std::size_t>(m.boundary)];
@@ -85,7 +86,7 @@ void check_place(const Case& c, const Case& changed, const BoundaryMotion& m)
     const auto off = [&](int axis, double x) { return b.mass > 0 && b.free[axis] ? 0 : x; };
     const double distance = Vec3{off(0, d.x), off(1, d.y), off(2, d.z)}.norm();
     if (distance <= 1e-6 * (w.high() - w.low()).norm()) return;
-    changed.source.fail(
+    c.source.fail(
         entry_of(c, m.boundary) + "/r",
         io::formatted(
             "the formula must begin at the place of the boundary at t = %.9g s, (%.9g, %.9g, %.9g) m, "
@@ -95,35 +96,36 @@ void check_place(const Case& c, const Case& changed, const BoundaryMotion& m)
 
 /// Throws io::PlacedError if numbers of v or omega have a part along or about a free axis, where the loads
 /// determine the motion.
-void check_velocities(const Case& c, const Case& changed, const std::vector<std::string>& pointers)
+void check_velocities(const Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers)
 {
     for (int number = 0; number < static_cast<int>(c.boundaries.size()); ++number) {
-        const Boundary& b = changed.world->all_boundaries()[static_cast<std::size_t>(number)];
+        const Boundary& b = c.world->all_boundaries()[static_cast<std::size_t>(number)];
+        const CaseParameters::Numbers& now = changed.numbers[static_cast<std::size_t>(number)];
         if (!(b.mass > 0)) continue;
         const auto check = [&](const char* key, const Vec3& value, int first) {
             const std::string pointer = entry_of(c, number) + '/' + key;
             const double of[] = {value.x, value.y, value.z};
             for (int axis = 0; axis < 3; ++axis)
                 if (includes(pointers, pointer) && b.free[first + axis] && of[axis] != 0)
-                    changed.source.fail(
-                        pointer, io::formatted("%s of a tool can be changed along the axes that are not "
-                                               "free only, it must be 0 along %c, got %.9g",
-                                               key, 'x' + axis, of[axis]));
+                    c.source.fail(pointer,
+                                  io::formatted("%s of a tool can be changed along the axes that are not "
+                                                "free only, it must be 0 along %c, got %.9g",
+                                                key, 'x' + axis, of[axis]));
         };
-        check("v", b.v, 0);
-        if (!b.inertia.is_zero()) check("omega", b.omega, 3);
+        check("v", now.v, 0);
+        if (!b.inertia.is_zero()) check("omega", now.omega, 3);
     }
 }
 
 /// Sets the velocities and loads that are numbers.
-void set_numbers(Case& c, const Case& changed, const std::vector<std::string>& pointers)
+void set_numbers(Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers)
 {
     for (int number = 0; number < static_cast<int>(c.boundaries.size()); ++number) {
         const auto is_changed = [&](const char* key) {
             return includes(pointers, entry_of(c, number) + '/' + key);
         };
-        const BoundaryMotion& m = motion_of(c, number);
-        const Boundary& now = changed.world->all_boundaries()[static_cast<std::size_t>(number)];
+        const BoundaryMotion m = motion_of(*c.motions, c, number);
+        const CaseParameters::Numbers& now = changed.numbers[static_cast<std::size_t>(number)];
         Boundary& b = c.world->boundary(number);
         if ((is_changed("v") || is_changed("r")) && !m.v && !m.r) {
             const auto prescribed = [&](int axis) { return !(b.mass > 0 && b.free[axis]); };
@@ -138,23 +140,41 @@ void set_numbers(Case& c, const Case& changed, const std::vector<std::string>& p
 
 }  // namespace
 
-void take_over(Case& c, const Case& changed, const std::vector<std::string>& pointers, double start)
+CaseParameters parameters_of(const Case& c)
+{
+    CaseParameters all{.gravity = c.world->gravity(),
+                       .laws = c.world->all_laws(),
+                       .motions = *c.motions,
+                       .numbers = {},
+                       .flows = {},
+                       .moving = c.moving};
+    for (const Boundary& b : c.world->all_boundaries()) all.numbers.push_back({b.v, b.omega, b.F, b.T});
+    if (c.insertions != nullptr)
+        for (const Insertion& i : c.insertions->all) all.flows.push_back(i.what().flow);
+    return all;
+}
+
+void check_parameters(const Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers)
 {
     check_laws(c, changed);
     check_velocities(c, changed, pointers);
-    if (includes(pointers, "/gravity")) c.world->set_gravity(changed.world->gravity());
-    if (includes(pointers, "/laws")) c.world->set_laws(changed.world->all_laws());
-    take_over_motions(c, changed, pointers, start);
 }
 
-void begin_change(Case& c, const Case& changed, const std::vector<std::string>& pointers)
+void set_parameters(Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers,
+                    double start)
+{
+    if (includes(pointers, "/gravity")) c.world->set_gravity(changed.gravity);
+    if (includes(pointers, "/laws")) c.world->set_laws(changed.laws);
+    set_motions(c, changed, pointers, start);
+}
+
+void begin_change(Case& c, const CaseParameters& changed, const std::vector<std::string>& pointers)
 {
     for (const BoundaryMotion& m : *c.motions)
-        if (m.r && includes(pointers, entry_of(c, m.boundary) + "/r")) check_place(c, changed, m);
+        if (m.r && includes(pointers, entry_of(c, m.boundary) + "/r")) check_place(c, m);
     set_numbers(c, changed, pointers);
-    if (c.insertions != nullptr)
-        for (std::size_t k = 0; k < c.insertions->all.size(); ++k)
-            c.insertions->all[k].begin_flow(changed.insertions->all[k].what().flow, c.world->t());
+    for (std::size_t k = 0; k < changed.flows.size(); ++k)
+        c.insertions->all[k].begin_flow(changed.flows[k], c.world->t());
     c.world->start_balance();
 }
 

@@ -4,7 +4,6 @@
 #include "granular/case/continued_case.hpp"
 #include "granular/stages/case_changes.hpp"
 #include "granular/stages/stages.hpp"
-#include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 
@@ -48,29 +47,24 @@ void add_stages(Case& c, const Environment& environment)
 /// Throws io::IoError for the first change that is not possible.
 void check_possible(const std::vector<CaseChange>& changes, const std::string& directory, bool has_stages)
 {
-    const auto is_possible = [&](const CaseChange& change) {
-        const auto& at = change.pointer;
-        return change.is_possible() &&
-               (!has_stages || at == "/interval" || at == "/name" || at.ends_with("/note"));
-    };
+    const ChangeIn where = has_stages ? ChangeIn::resumed_stages : ChangeIn::resumed_run;
     for (const CaseChange& change : changes)
-        if (!is_possible(change))
+        if (!change.is_possible(where))
             throw io::IoError("--resume: " + directory +
                               "/case.json: is another case, or this case with other options; --force "
                               "overwrites it; " +
-                              change.text() + "; " +
-                              (has_stages ? "a run with stages can change name, note, end and interval"
-                                          : changeable_entries));
+                              change.text() + "; " + changeable_entries(where));
 }
 
-/// The case of `first` with the outputs and parameters of `changed`
-Case merged(Case first, const Case& changed)
+/// The case of `first` with the outputs of `changed` and its parameters `to`
+Case merged(Case first, const Case& changed, const CaseParameters& to)
 {
     const io::JsonSource before = identity_of(first.source), now = identity_of(changed.source);
     std::vector<std::string> pointers;
     for (const CaseChange& change : changes_of(before.root, now.root)) pointers.push_back(change.pointer);
-    take_over(first, changed, pointers);
     first.source = changed.source;
+    check_parameters(first, to, pointers);
+    set_parameters(first, to, pointers);
     first.name = changed.name, first.end = changed.end, first.interval = changed.interval;
     first.frame_interval = changed.frame_interval;
     first.notices = changed.notices;
@@ -131,12 +125,12 @@ Continuation continued_run(const std::string& text, const std::string& file, con
     Environment of_first = environment;
     of_first.settings.clear(), of_first.seed.reset(), of_first.continues = nullptr;
     const std::string of = exists(first_file) ? first_file : case_file;
-    Continuation run{.c = merged(read_case(io::read_file(of, most_of_case), of, of_first), changed)};
-    run.given = new_given;
+    const CaseParameters to = parameters_of(changed);
+    Continuation run{.c = merged(read_case(io::read_file(of, most_of_case), of, of_first), changed, to)};
+    run.given = new_given, run.changed = to;
     add_stages(run.c, environment);
     for (const CaseChange& change : changes)
         run.changes.push_back(change.text()), run.pointers.push_back(change.pointer);
-    run.changed = std::make_shared<const Case>(std::move(changed));
     run.earlier_id = identity(earlier) + run.c.files_read;
     run.earlier_text = earlier.current_text();
     run.earlier_interval = *before.root.member("interval")->value.number();

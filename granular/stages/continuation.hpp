@@ -10,7 +10,7 @@
 
 #pragma once
 
-#include "granular/case/case_file.hpp"
+#include "granular/stages/case_parameters.hpp"
 
 namespace hilda::granular {
 
@@ -19,8 +19,7 @@ struct Continuation {
     Case c;
     /// Entries that the run has to change when it continues: a text for each, and its pointer
     std::vector<std::string> changes = {}, pointers = {};
-    /// The case with the new parameters, of a run that is or was changed; nullptr otherwise
-    std::shared_ptr<const Case> changed = {};
+    CaseParameters changed = {};  ///< the new parameters, of a run that is or was changed
     /// Identity of the case before the changes, which its checkpoints have
     std::string earlier_id = {};
     std::string earlier_text = {};  ///< of case.json
@@ -42,7 +41,7 @@ Continuation new_run(const std::string& text, const std::string& file, const Env
 ///
 /// Without a checkpoint the run starts again, with the changes.
 ///
-/// Throws io::IoError if an entry has changed that cannot change, with changeable_entries.
+/// Throws io::IoError if an entry has changed that cannot change, with changeable_entries().
 Continuation continued_run(const std::string& text, const std::string& file, const Environment& environment,
                            const std::string& directory, const io::JsonSource& earlier);
 

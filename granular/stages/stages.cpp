@@ -3,7 +3,6 @@
 
 #include "granular/case/continued_case.hpp"
 #include "granular/stages/case_changes.hpp"
-#include "granular/stages/take_over.hpp"
 #include "io/archive.hpp"
 #include "io/message.hpp"
 
@@ -14,11 +13,6 @@
 namespace hilda::granular {
 
 namespace {
-
-constexpr const char* changeable_in_stage =
-    "a stage can set /gravity; r, v, omega, F and T of boundaries; the numbers of laws; and rate, mass_rate, "
-    "to, "
-    "v, random_v and active of insertions";
 
 /// The pointer with the indices of boundaries and insertions in place of their names
 std::string with_indices(const io::Json& root, const std::string& pointer)
@@ -38,31 +32,12 @@ std::string with_indices(const io::Json& root, const std::string& pointer)
     return pointer;
 }
 
-/// "POINTER: WHAT" of a message "FILE:LINE:COLUMN (POINTER): WHAT (from ORIGIN)"
-std::string without_place(const std::string& message, const std::string& origin)
-{
-    const std::size_t open = message.find(" ("), close = message.find("): ", open);
-    if (open == std::string::npos || close == std::string::npos) return message;
-    std::string what = message.substr(close + 3);
-    if (const std::string end = " (from " + origin + ")"; what.ends_with(end))
-        what.resize(what.size() - end.size());
-    if (what.starts_with(origin + ": ")) what.erase(0, origin.size() + 2);
-    return message.substr(open + 2, close - open - 2) + ": " + what;
-}
-
 /// Number of the particles that can move and of the clumps
 std::size_t free_bodies(const World& w)
 {
     std::size_t number = w.clumps().size();
     w.each_particle([&](const Particle& p) { number += !p.fixed && p.clump < 0 ? 1 : 0; });
     return number;
-}
-
-bool is_of_stage(const CaseChange& change)
-{
-    return change.is_possible() &&
-           (change.pointer.starts_with("/boundaries/") || change.pointer.starts_with("/laws/") ||
-            change.pointer.starts_with("/insert/") || change.pointer == "/gravity");
 }
 
 }  // namespace
@@ -73,41 +48,45 @@ Stages::Stages(const Case& c, const Environment& environment) : spec(c.stage_spe
     here.settings.clear(), here.seed.reset(), here.continues = nullptr, here.with_particles = false;
     io::JsonSource source = c.source;
     for (std::size_t k = 0; k < spec.size(); ++k) {
-        const std::string place = "/stages/" + std::to_string(k) + "/set",
-                          origin = "stage '" + spec[k].name + '\'';
-        Parameters& now = parameters.emplace_back();
+        Change& change = changes.emplace_back();
         if (spec[k].set.empty()) continue;
         try {
-            const io::JsonSource before(io::written(source.root), "", std::size_t{1} << 28);
-            for (const auto& [name, value] : spec[k].set) {
-                now.pointers.push_back(with_indices(source.root, name));
-                source.set(now.pointers.back() + '=' + io::written(value), origin);
-            }
-            const io::JsonSource after(io::written(source.root), "", std::size_t{1} << 28);
-            for (const CaseChange& change : changes_of(before.root, after.root)) {
-                if (!is_of_stage(change))
-                    c.source.fail(place,
-                                  change.pointer + " cannot be set by a stage; " + changeable_in_stage);
-                now.pointers.push_back(change.pointer);  // also below an entry that is set as a whole
-            }
-            now.c = std::make_shared<const Case>(read_case(source, here));
-            Case checked = read_case(c.source, here);
-            take_over(checked, *now.c, now.pointers);  // the laws
+            change = read_change(c, source, spec[k], here);
         } catch (const io::PlacedError& e) {
-            const std::string what = e.what();
-            if (what.find("(" + place + ")") != std::string::npos) throw;
-            c.source.fail(place, without_place(what, origin));
+            c.source.fail("/stages/" + std::to_string(k) + "/set",
+                          (e.pointer.empty() ? "/" : e.pointer) + ": " + e.reason);
         }
     }
+}
+
+/// Applies what a stage sets to the source of the case and reads the result.
+Stages::Change Stages::read_change(const Case& c, io::JsonSource& source, const StageSpec& s,
+                                   const Environment& environment)
+{
+    Change change;
+    const io::JsonSource before(io::written(source.root), "", std::size_t{1} << 28);
+    for (const auto& [name, value] : s.set) {
+        change.pointers.push_back(with_indices(source.root, name));
+        source.set(change.pointers.back() + '=' + io::written(value), "stage '" + s.name + '\'');
+    }
+    const io::JsonSource after(io::written(source.root), "", std::size_t{1} << 28);
+    for (const CaseChange& entry : changes_of(before.root, after.root)) {
+        if (!entry.is_possible(ChangeIn::stage))
+            source.fail(entry.pointer, "cannot be set by a stage; " + changeable_entries(ChangeIn::stage));
+        change.pointers.push_back(entry.pointer);  // also below an entry that is set as a whole
+    }
+    change.to = parameters_of(read_case(source, environment));
+    check_parameters(c, change.to, change.pointers);
+    return change;
 }
 
 void Stages::each_step_limit(World& w,
                              const std::function<void(const std::string&, const World::StepLimits&)>& f) const
 {
     const std::vector<PairLaw> laws = w.all_laws();
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-        if (parameters[k].c == nullptr) continue;
-        w.set_laws(parameters[k].c->world->all_laws());
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+        if (changes[k].pointers.empty()) continue;
+        w.set_laws(changes[k].to.laws);
         f("/stages/" + std::to_string(k) + "/set", w.step_limits());
     }
     w.set_laws(laws);
@@ -116,8 +95,8 @@ void Stages::each_step_limit(World& w,
 std::vector<int> Stages::moving() const
 {
     std::vector<int> all;
-    for (const Parameters& p : parameters)
-        if (p.c != nullptr) all.insert(all.end(), p.c->moving.begin(), p.c->moving.end());
+    for (const Change& change : changes)
+        all.insert(all.end(), change.to.moving.begin(), change.to.moving.end());
     return all;
 }
 
@@ -135,9 +114,9 @@ void Stages::begin(Case& c)
     const std::size_t k = log.size();
     log.push_back({.start = c.world->steps()});
     largest_energy = 0;
-    if (parameters[k].c != nullptr) {
-        take_over(c, *parameters[k].c, parameters[k].pointers, c.world->t());
-        begin_change(c, *parameters[k].c, parameters[k].pointers);
+    if (!changes[k].pointers.empty()) {
+        set_parameters(c, changes[k].to, changes[k].pointers, c.world->t());
+        begin_change(c, changes[k].to, changes[k].pointers);
     }
     if (spec[k].remove.empty()) return;
     const auto before = static_cast<std::int64_t>(c.world->count());
@@ -156,8 +135,8 @@ void Stages::report_removal(const World& w, const std::function<void(const std::
 void Stages::resume(Case& c) const
 {
     for (std::size_t k = 0; k < log.size(); ++k)
-        if (parameters[k].c != nullptr)
-            take_over(c, *parameters[k].c, parameters[k].pointers, static_cast<double>(log[k].start) * h);
+        if (!changes[k].pointers.empty())
+            set_parameters(c, changes[k].to, changes[k].pointers, static_cast<double>(log[k].start) * h);
 }
 
 /// Whether the condition of the present stage is met. It is evaluated at some instants only.
@@ -194,7 +173,8 @@ void Stages::update(Case& c, const std::function<void(const std::string&)>& warn
         } catch (const io::PlacedError& e) {
             log.pop_back();
             log.back() = before;
-            throw StageFailed("stage_motion", e.what());
+            throw StageFailed("stage_motion",
+                              "stage '" + spec[log.size()].name + "': " + e.pointer + ": " + e.reason);
         }
         report_removal(w, warn);
     }
@@ -216,8 +196,7 @@ void Stages::report_condition(const World& w, const std::function<void(const std
     const double energy = w.kinetic_energy();
     const std::string message = io::formatted(
         "stage '%s': its condition is not met until t = %.9g s, after %.9g s: the kinetic energy is %.3g J "
-        "of "
-        "%zu free particles and clumps, %.3g of the largest one in the stage",
+        "of %zu free particles and clumps, %.3g of the largest one in the stage",
         s.name.c_str(), w.t(), static_cast<double>(w.steps() - log.back().start) * h, energy, free_bodies(w),
         largest_energy > 0 ? energy / largest_energy : 1.);
     if (s.fails && is_late(w)) throw StageFailed("stage_timeout", message);

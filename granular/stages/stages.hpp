@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "granular/case/case_file.hpp"
+#include "granular/stages/case_parameters.hpp"
 
 namespace hilda::granular {
 
@@ -56,11 +56,14 @@ private:
         std::int64_t reason = running;
         std::int64_t removed = 0;  ///< particles, at the start
     };
-    struct Parameters {
-        std::vector<std::string> pointers;
-        std::shared_ptr<const Case> c;  ///< without particles; nullptr if the stage sets nothing
+    /// What a stage sets
+    struct Change {
+        std::vector<std::string> pointers;  ///< none: it sets nothing
+        CaseParameters to;
     };
 
+    static Change read_change(const Case& c, io::JsonSource& source, const StageSpec& s,
+                              const Environment& environment);
     void begin(Case& c);
     void report_removal(const World& w, const std::function<void(const std::string&)>& warn) const;
     bool is_at_rest(const World& w);
@@ -69,7 +72,7 @@ private:
     long steps_in(double time) const;
 
     std::vector<StageSpec> spec;
-    std::vector<Parameters> parameters;
+    std::vector<Change> changes;
     double h;  ///< [s]
     std::vector<Part> log;
     double largest_energy = 0;  ///< kinetic, of the present stage [J]

@@ -173,7 +173,7 @@ def refused(runs):
     def no(code, message, *options, source=case):
         runs.refused(source, code, message, "--output", "kept", "--resume", "--end", END, *options)
 
-    can = "; a run can change name, note, gravity, end and interval; r, v, omega, F and T of boundaries; "
+    can = "; a run can change name, note, end, interval and gravity; r, v, omega, F and T of boundaries; "
     for change, shown in (("/step=2e-6", "/step was 5e-06 and is 2e-06 now"), ("/skin=0.2", "/skin was missing and is 0.2 now"),
                           ("/fill/0/seed=3", "/fill/0/seed was missing and is 3 now"),
                           ("/materials/0/E=8e7", "/materials/0/E was 7e\\+07 and is 8e\\+07 now"),

@@ -165,14 +165,14 @@ def errors(runs):
 
     one = {"name": "one"}
     for value, message in (({"/laws/0/mu": -1}, "/laws/0/mu: mu must not be negative, got -1$"),
-                           ({"/step": 1e-6}, "/step cannot be set by a stage; a stage can set /gravity;"),
-                           ({"/fill/0/radius": 1e-3, "/materials/0/E": 1}, "/materials/0/E cannot be set by a stage"),
+                           ({"/step": 1e-6}, "/step: cannot be set by a stage; a stage can set gravity; r, v, omega, F and T of boundaries;"),
+                           ({"/fill/0/radius": 1e-3, "/materials/0/E": 1}, "/materials/0/E: cannot be set by a stage"),
                            ({"/laws/7/mu": 1}, '/laws: there is no "7" in a list of 2'),
                            ({"gravity": [0, 0, 0]}, "/: must be /json/pointer=VALUE"),
                            ({"/boundaries/flor/v": [0, 0, 1]}, '/boundaries: there is no "flor" in a list of 2'),
                            ({"/laws/1/spin": {"law": "torsional-spring"}}, "/laws/1/spin: the spin law must be that of the run"),
                            ({"/boundaries/floor/v": [0, 0, "sine(t)"]}, "/boundaries/0/v/2: unknown function 'sine'"),
-                           ({"/end": 3}, "/end cannot be set by a stage"),
+                           ({"/end": 3}, "/end: cannot be set by a stage"),
                            ({"/laws/0/nu": 3}, "/laws/0/nu: unknown key .nu.")):
         refused("/stages/1/set", message, one, {"name": "two", "set": value})
     plane = {"type": "half_space", "r": [0, 0, 0], "normal": [0, 0, 1]}

@@ -16,12 +16,13 @@ TEST_CASE("the entries in which two cases differ are found, and those that can c
         R"({"gravity": [0, 0, -9.81], "step": 1e-5, "laws": [{"mu": 0.3, "between": ["a", "b"]}],
         "boundaries": [{"r": [0, 0, 0], "v": [0, 0, 1]}, {"r": ["t", 0, 0], "radius": 1}], "insert": [{"rate": 3, "seed": 2}]})",
         "before");
-    const auto changes = [&](const std::string& set) {
+    const auto changes = [&](const std::string& set, ChangeIn where = ChangeIn::resumed_run) {
         io::JsonSource now = before;
         now.set(set);
         std::string all;
         for (const CaseChange& change : changes_of(before.root, now.root))
-            all += (all.empty() ? "" : "; ") + change.text() + (change.is_possible() ? "" : ": impossible");
+            all +=
+                (all.empty() ? "" : "; ") + change.text() + (change.is_possible(where) ? "" : ": impossible");
         return all;
     };
     CHECK(changes("/step=1e-5").empty());
@@ -40,6 +41,31 @@ TEST_CASE("the entries in which two cases differ are found, and those that can c
     CHECK(changes("/boundaries=[]").ends_with(": impossible"));
     CHECK(changes("/insert/0/rate=4") == "/insert/0/rate was 3 and is 4 now");
     CHECK(changes("/insert/0/seed=4").ends_with(": impossible"));
+
+    using enum ChangeIn;
+    const std::tuple<const char*, bool, bool, bool> entries[] = {
+        {"/name=x", true, true, false},
+        {"/interval=3", true, true, false},
+        {"/boundaries/0/note=x", true, true, true},
+        {"/note=x", true, true, false},
+        {"/gravity=[0,0,1]", true, false, true},
+        {"/laws/0/mu=0.2", true, false, true},
+        {"/insert/0/rate=4", true, false, true},
+        {"/boundaries/0/F=[1,2,3]", true, false, true},
+        {"/step=2e-5", false, false, false},
+        {"/insert/0/seed=4", false, false, false}};
+    for (const auto& [set, in_run, in_stages, in_stage] : entries) {
+        INFO(set);
+        CHECK(changes(set, resumed_run).ends_with(": impossible") == !in_run);
+        CHECK(changes(set, resumed_stages).ends_with(": impossible") == !in_stages);
+        CHECK(changes(set, stage).ends_with(": impossible") == !in_stage);
+    }
+    const std::string others =
+        "gravity; r, v, omega, F and T of boundaries; the numbers of laws; and rate, mass_rate, to, v, "
+        "random_v and active of insertions";
+    CHECK(changeable_entries(resumed_run) == "a run can change name, note, end, interval and " + others);
+    CHECK(changeable_entries(resumed_stages) == "a run with stages can change name, note, end and interval");
+    CHECK(changeable_entries(stage) == "a stage can set " + others);
 }
 
 TEST_CASE("the group of a particle follows from its id, also after a checkpoint", "[granular][groups]")

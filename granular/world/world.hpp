@@ -338,8 +338,9 @@ public:
     Vec3 momentum() const { return sums().momentum; }
     /// The particles that were removed since the last call of clear_removed(), ordered by time, then by id
     const std::vector<RemovedParticle>& removed() const { return removed_particles; }
-    /// Removes and records the particles with these ids, which are in ascending order. Ids of particles that
-    /// are not there have no effect. WorldOptions::removable must be set.
+    /// Removes and records the particles with these ids, which are in ascending order. A clump is removed as
+    /// a whole if one of its particles is listed. Ids of particles that are not there have no effect.
+    /// WorldOptions::removable must be set.
     void remove(const std::vector<std::uint32_t>& ids);
     void clear_removed() { removed_particles.clear(); }
     /// Number and mass of all removed particles [kg]

@@ -106,9 +106,12 @@ void World::remove(const std::vector<std::uint32_t>& ids)
     const par::Array<par::Cpu, ClumpBody>& clump = engine->arrays().clump;
     std::vector<std::uint32_t> kept;
     const std::size_t first = removed_particles.size();
-    const auto is_listed = [&](std::uint32_t id) {  // a clump by its first particle
+    std::vector<bool> is_listed_clump(clump.size(), false);
+    for (const std::uint32_t id : ids)
+        if (const std::uint32_t c = clump_of(id); c != no_clump) is_listed_clump[c] = true;
+    const auto is_listed = [&](std::uint32_t id) {
         const std::uint32_t c = clump_of(id);
-        return std::binary_search(ids.begin(), ids.end(), c == no_clump ? id : clump.data()[c].first_id);
+        return c == no_clump ? std::binary_search(ids.begin(), ids.end(), id) : is_listed_clump[c];
     };
     for (std::uint32_t k = 0; k < p.count; ++k)
         if (is_listed(p.id.data()[k]))

@@ -323,6 +323,29 @@ TEST_CASE("particles can be added after the last clump has left", "[granular][cl
     for (const Particle& p : world.particles()) CHECK((p.v - Vec3{0.01, 0, 0}).norm() < 1e-9);
 }
 
+TEST_CASE("a clump is removed as a whole by the id of any of its particles", "[granular][clumps][outflow]")
+{
+    for (std::uint32_t member = 0; member < 5; ++member) {
+        WorldOptions o = room(1e-6);
+        o.removable = true;
+        World world = glass_world(o);
+        const int shape = world.add_template(solid_clump("bent", three, glass().density));
+        world.add_clump(Clump{.shape = shape, .r = {-10 * R, 0, 0}});  // ids 0, 1, 2
+        world.add(Particle{.r = {0, 0, 0}, .radius = R});              // 3
+        const std::uint32_t other = world.add_clump(Clump{.shape = shape, .r = {10 * R, 0, 0}});  // 4, 5, 6
+        world.step(1);
+        REQUIRE(other == 4);
+        world.remove({member, 99});
+        const bool of_clump = member != 3;
+        CHECK(world.count() == (of_clump ? 4u : 6u));
+        CHECK(world.clumps().size() == (of_clump ? 1u : 2u));
+        const std::uint32_t first = member == 3 ? 3 : member > 3 ? 4 : 0;
+        REQUIRE(world.removed().size() == (of_clump ? 3u : 1u));
+        for (std::uint32_t k = 0; k < world.removed().size(); ++k) CHECK(world.removed()[k].id == first + k);
+        world.step(10);
+    }
+}
+
 TEST_CASE("a periodic axis must be three times as long as the reach of a clump", "[granular][clumps]")
 {
     WorldOptions options = room(1e-5);

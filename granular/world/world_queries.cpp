@@ -120,6 +120,26 @@ World::Sums World::sums() const
     return all;
 }
 
+namespace {
+
+/// Smallest distance of a round boundary from its axis or centre [m]
+double narrowest_radius(const Boundary& b)
+{
+    return b.shape == Boundary::Shape::frustum ? std::min(b.radius, b.second_radius) : b.radius;
+}
+
+/// The place inside a boundary with the largest curvature
+Nearest narrowest_place(const Boundary& b)
+{
+    Nearest near = nearest(b, b.r);
+    if (b.shape != Boundary::Shape::frustum) return near;
+    const double radius = narrowest_radius(b);  // the mean curvature of a cone at this distance from its axis
+    near.curvature = radius > 0 ? -b.cosine / (2 * radius) : -infinite_curvature;
+    return near;
+}
+
+}  // namespace
+
 World::StepLimits World::step_limits(double least_speed) const
 {
     StepLimits limits;
@@ -153,9 +173,9 @@ World::StepLimits World::step_limits(double least_speed) const
         limits.rayleigh = std::min(limits.rayleigh, rayleigh_time(p.radius, m));
         add_collision(p.mass / 2, p.radius / 2);  // of two equal particles
         for (const Boundary& b : boundaries)      // of a bowl or tube that is little larger than the particle
-            if (b.inside != 0 && b.radius > p.radius && b.radius < 2 * p.radius)
+            if (b.inside != 0 && !is_larger_than(b, p.radius) && narrowest_radius(b) < 2 * p.radius)
                 add_collision(1 / (1 / p.mass + b.inverse_mass()),
-                              effective_radius(b, p.radius, nearest(b, b.r)));
+                              effective_radius(b, p.radius, narrowest_place(b)));
     });
     return limits;
 }

@@ -161,3 +161,32 @@ TEST_CASE("a bowl little larger than a particle shortens the collision time", "[
     // t ~ (m²/R*)^(1/5): R* = 11 R in the bowl, R/2 and half the mass for two equal particles
     CHECK(collision_time(1.1 * R) / collision_time(10 * R) == Approx(std::pow(2 / 11., 0.2)).epsilon(1e-6));
 }
+
+TEST_CASE("the narrow end of a light frustum shortens the collision time, whichever end it is",
+          "[granular][shapes]")
+{
+    const auto collision_time = [](double from, double to) {
+        WorldOptions o;
+        o.low = {0, 0, 0}, o.high = {0.05, 0.05, 0.05}, o.h = 1e-7;
+        World world(o, {glass()});
+        world.set_law(0, 0, hertz_mindlin(glass(), 0.5));
+        Particle p;
+        p.r = {0.025, 0.025, 0.025}, p.radius = R;
+        Boundary tool = frustum({0.025, 0.025, 0.01}, {0, 0, 1}, 0.02, from, to);
+        const double m = 4. / 3 * M_PI * R * R * R * glass().density;
+        tool.inside = 1, tool.mass = 0.1 * m;
+        world.add(tool);
+        world.add(p);
+        return world.step_limits().collision;
+    };
+    // t ~ (m*²/R*)^(1/5): m* = m/11 and 1/R* = 1/R - cos/(2 ρ), at least 1/(2 R), at the radius ρ of the
+    // narrow end; m/2 and R/2 for two equal particles
+    const double equal = collision_time(10 * R, 9 * R);
+    for (const double narrow : {0., 0.3 * R, 1.5 * R}) {
+        const double slant = std::hypot(0.02, 6 * R - narrow), cosine = 0.02 / slant,
+                     R_eff = narrow == 1.5 * R ? R / (1 - cosine * R / (2 * narrow)) : 2 * R;
+        const double ratio = std::pow(std::pow(2 / 11., 2) * (R / 2) / R_eff, 0.2);
+        CHECK(collision_time(narrow, 6 * R) / equal == Approx(ratio).epsilon(1e-6));
+        CHECK(collision_time(6 * R, narrow) / equal == Approx(ratio).epsilon(1e-6));
+    }
+}

@@ -31,8 +31,9 @@ NamedBoundary read_motion(ObjectReader& o, const std::string& name)
     read_vector(o, "r", all.boundary.r, all.motion.r);
     if (all.motion.r && !finite((*all.motion.r)(0)))
         o.fail("r", "r must be finite at t = 0, got " + described(*o.find("r")));
-    if (all.motion.r && o.has("v")) o.fail("v", "v must not be given if r is a formula");
     read_vector(o, "v", all.boundary.v, all.motion.v);
+    if (all.motion.r && (all.motion.v || !(all.boundary.v == Vec3{0, 0, 0})))
+        o.fail("v", "v must be 0 or not be given if r is a formula, got " + io::written(*o.find("v")));
     return all;
 }
 
@@ -143,8 +144,7 @@ io::KeySchema place(const std::string& point)
     return {"r",
             point +
                 " [m], in the global frame; numbers or formulas in t. With formulas, the boundary is at r(t) "
-                "after "
-                "every step.",
+                "after every step.",
             R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"};
 }
 
@@ -195,8 +195,7 @@ const bool registered =
                        "maxItems": 5, "default": [], "examples": [["+z"]])"},
                {"r",
                 "Displacement of the whole box from low and high [m], in the global frame; numbers or "
-                "formulas in "
-                "t.",
+                "formulas in t.",
                 R"json("$ref": "#/$defs/formulas", "default": [0, 0, 0],
                          "examples": [["1e-3*sin(2*pi*20*t)", 0, 0]])json"}},
           .example = R"json("name": "box", "low": [0, 0, 0], "high": [0.03, 0.02, 0.06], "open": ["+z"],

@@ -275,7 +275,7 @@ BY_BOTH = [
     ("/boundaries/4/open", ["-x", "+x", "-y", "+y", "-z", "+z"], "/boundaries/4/open: open must not contain all six sides"),
     ("/boundaries/4/low", MISSING, "/boundaries/4: missing key 'low'"),
     ("/boundaries/4/omega", [0, 0, 1], "/boundaries/4/omega: unknown key \"omega\""),
-    ("/boundaries/5/v", [0, 0, 0], "/boundaries/5/v: v must not be given if r is a formula"),
+    ("/boundaries/5/v", [0, 0, 1], "/boundaries/5/v: v must be 0 or not be given if r is a formula, got [0, 0, 1]"),
     ("/boundaries/5/r", ["t", "t"], "/boundaries/5/r: r must be three numbers or expressions in t"),
     ("/boundaries/5/omega", [0, 0, "t"], "/boundaries/5/omega: omega must be three numbers if the boundary rotates freely about all axes"),
     ("/boundaries/5/mass", -1, "/boundaries/5/mass: mass must be positive"),

@@ -136,7 +136,7 @@ TEST_CASE("boundaries move as their formulas prescribe", "[granular][case]")
     refused("v", {0, "sin(9*t)", nullptr},
             "v/2: a component must be a number or an expression in a string, got null");
     c["boundaries"][0]["r"] = {0, 0, "sin(9*t)"};
-    refused("v", {0, 0, 1}, "v: v must not be given if r is a formula");
+    refused("v", {0, 0, 1}, "v: v must be 0 or not be given if r is a formula, got [0, 0, 1]");
     refused("r", {0, 0, "1/t"}, "r: r must be finite at t = 0, got a list of 3");
     c["boundaries"][0]["r"] = {0, 0, -5}, c["boundaries"][0]["v"] = {0, 0, "1/t"};
     CHECK_NOTHROW(read_case(c.dump(), "file"));  // v is evaluated at the middle of a step

@@ -570,7 +570,9 @@ Case changed_case(const std::string& text, const std::string& file, const Enviro
     out.source.rename("every", "interval");
     out.source.rename("frames_every", "frame_interval");
     out.source.rename("checkpoint_every", "checkpoint_interval");
-    for (const Setting& setting : environment.settings) out.source.set(setting.change, setting.origin);
+    for (const Setting& setting : environment.settings)
+        out.source.set(with_numbers(out.source.root, setting.change),
+                       setting.origin.empty() ? "--set " + io::in_quotes(setting.change) : setting.origin);
     out.notices = out.source.notices;
     if (environment.seed) set_seeds(out, *environment.seed);
     if (environment.continues != nullptr) keep_intervals(out.source, *environment.continues);
@@ -578,6 +580,25 @@ Case changed_case(const std::string& text, const std::string& file, const Enviro
 }
 
 }  // namespace
+
+std::string with_numbers(const io::Json& root, const std::string& pointer)
+{
+    for (const std::string list : {"boundaries", "insert"}) {
+        const std::string start = '/' + list + '/';
+        const io::Json::Member* entries = root.member(list);
+        if (!pointer.starts_with(start) || entries == nullptr || entries->value.list() == nullptr) continue;
+        const std::size_t end = std::min(pointer.find_first_of("/=", start.size()), pointer.size());
+        const std::string key = pointer.substr(start.size(), end - start.size());
+        if (key.find_first_not_of("0123456789") == std::string::npos) continue;  // a number
+        for (std::size_t k = 0; k < entries->value.size(); ++k) {
+            const io::Json::Member* found = entries->value.at(k).member("name");
+            if (found != nullptr && found->value.string() != nullptr &&
+                io::pointer_to("", *found->value.string()) == '/' + key)
+                return start + std::to_string(k) + pointer.substr(end);
+        }
+    }
+    return pointer;
+}
 
 io::JsonSource changed_source(const std::string& text, const std::string& file,
                               const Environment& environment)

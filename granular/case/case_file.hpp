@@ -16,10 +16,14 @@
 
 namespace hilda::granular {
 
-/// A change of one entry of a case: "/json/pointer=VALUE", and the option that gave it, for messages
+/// A change of one entry of a case: "/json/pointer=VALUE", and the option that gave it, for messages. In the
+/// pointer the name of a boundary or an insertion can stand for its number.
 struct Setting {
     std::string change, origin = {};
 };
+
+/// A JSON pointer, or a change of an entry, with the number of a boundary or insertion in place of its name
+std::string with_numbers(const io::Json& root, const std::string& pointer);
 
 class Stages;
 

@@ -14,24 +14,6 @@ namespace hilda::granular {
 
 namespace {
 
-/// The pointer with the indices of boundaries and insertions in place of their names
-std::string with_indices(const io::Json& root, const std::string& pointer)
-{
-    for (const std::string key : {"boundaries", "insert"}) {
-        const std::string start = '/' + key + '/';
-        const io::Json::Member* entries = root.member(key);
-        if (!pointer.starts_with(start) || entries == nullptr || entries->value.list() == nullptr) continue;
-        const std::size_t end = std::min(pointer.find('/', start.size()), pointer.size());
-        const std::string name = pointer.substr(start.size(), end - start.size());
-        for (std::size_t k = 0; k < entries->value.size(); ++k) {
-            const io::Json::Member* found = entries->value.at(k).member("name");
-            if (found != nullptr && found->value.string() != nullptr && *found->value.string() == name)
-                return start + std::to_string(k) + pointer.substr(end);
-        }
-    }
-    return pointer;
-}
-
 /// Number of the particles that can move and of the clumps
 std::size_t free_bodies(const World& w)
 {
@@ -66,7 +48,7 @@ Stages::Change Stages::read_change(const Case& c, io::JsonSource& source, const 
     Change change;
     const io::JsonSource before(io::written(source.root), "", std::size_t{1} << 28);
     for (const auto& [name, value] : s.set) {
-        change.pointers.push_back(with_indices(source.root, name));
+        change.pointers.push_back(with_numbers(source.root, name));
         source.set(change.pointers.back() + '=' + io::written(value), "stage '" + s.name + '\'');
     }
     const io::JsonSource after(io::written(source.root), "", std::size_t{1} << 28);

@@ -157,6 +157,29 @@ def timeouts(runs):
                  "--output", "jump")
 
 
+def names(runs):
+    """Names of boundaries and insertions in --set, and a formula of r with a velocity of 0"""
+    case = runs.case("names", **dict(RUN, end=1e-3, stages=[], boundaries=[dict(FLOOR, name="a/b~0"), RUN["boundaries"][1]]))
+    runs.finish(case, "--output", "names", "--set", "/boundaries/a~1b~00/v=[0,0,-0.01]", "--set", "/insert/feed/active=true")
+    written = json.loads((runs.folder / "names" / "case.json").read_text())
+    expect(written["boundaries"][0]["v"] == [0, 0, -0.01] and written["insert"][0]["active"], f"{written['boundaries']}")
+    runs.finish(case, "--output", "names", "--resume", "--end", "2e-3", "--set", "/boundaries/a~1b~00/v=[0,0,-0.02]",
+                "--set", "/boundaries/wall/omega=[0,0,1]", "--set", "/insert/feed/v=[0,0,-2]")
+    z = float(table(runs, "names")[-1]["a/b~0_z"])
+    expect(abs(z + 1e-5 + 2e-5) < 1e-12, f"{z}")
+    runs.refused(case, 3, r'\(/boundaries\): --set "/boundaries/wal/v=1": there is no "wal" in a list of 2', "--output", "n", "--set", "/boundaries/wal/v=1")
+    # a boundary with a velocity has a formula of r from a stage on
+    stages = [{"name": "v", "duration": 1e-3},
+              {"name": "r", "duration": 1e-3, "set": {"/boundaries/floor/v": [0, 0, 0], "/boundaries/floor/r": [0, 0, "-1e-5-0.02*t"]}}]
+    moved = [dict(FLOOR, v=[0, 0, -0.01]), RUN["boundaries"][1]]
+    runs.finish(runs.case("r", **dict(RUN, boundaries=moved, stages=stages)), "--output", "r")
+    z = float(table(runs, "r")[-1]["floor_z"])
+    expect(abs(z + 3e-5) < 1e-12, f"r(t) from a velocity: {z}")
+    del stages[1]["set"]["/boundaries/floor/v"]
+    runs.refused(runs.case("v", **dict(RUN, boundaries=moved, stages=stages)), 3,
+                 r"\(/stages/1/set\): /boundaries/0/v: v must be 0 or not be given if r is a formula, got \[0, 0, -0.01\]$", "--output", "v")
+
+
 def errors(runs):
     """Wrong entries: exit code 3 with their place"""
     def refused(pointer, message, *stages, **changes):
@@ -313,6 +336,7 @@ def main():
         runs = Runs(sys.argv[1], folder)
         closed_forms(runs)
         timeouts(runs)
+        names(runs)
         errors(runs)
         whole_entries(runs)
         clumps(runs)

@@ -68,8 +68,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_option(
            "CASE", o.file,
            "case file (JSON), name of a built-in case or of a validation, cases to list the built-in cases "
-           "or "
-           "to write them as files, laws to list the force laws, or schema to print the JSON schema of cases")
+           "or to write them as files, laws to list the force laws, or schema to print the JSON schema of "
+           "cases")
         ->required()
         ->type_name("");
     app.add_option("NAME", o.name, "after cases: the built-in case that is written; default: print the list")
@@ -127,7 +127,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
           });
     io::add_sink_options<CaseSetup>(app, o.outputs);
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
-    app.add_flag("--strict", o.strict, "end with exit code 4 at a warning of the watch over the run");
+    app.add_flag("--strict", o.strict, "end with exit code 4 at a warning of the watch or of a stage");
     app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
     app.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
     app.add_flag("-v,--verbose", o.verbose, "report steps, checkpoints and resumption on stderr");

@@ -60,7 +60,8 @@ EarlierRun earlier_run(const Options& o, const Case& c)
     const EarlierRun run = {.is_complete = is_complete(o.output), .end = std::lround(end / c.h)};
     const long new_end = std::lround(c.end / c.h);
     if (!run.is_complete || run.end == new_end) return run;
-    if (new_end < run.end) refuse_end(o, c, end);
+    // a run with stages may have ended earlier, which its last checkpoint states
+    if (new_end < run.end && c.stages == nullptr) refuse_end(o, c, end);
     if (!exists(o.output + "/checkpoint.end"))
         throw io::UsageError("granular: " + o.output +
                              ": its run has ended without checkpoint.end; --force starts it again");
@@ -73,6 +74,14 @@ void refuse_end(const Options& o, const Case& c, double reached)
         "granular: --end must be after t = %.12g s, which the run in %s has reached, got %.12g; "
         "--force starts it again",
         reached, o.output.c_str(), c.end));
+}
+
+void refuse_end_after_stages(const Options& o, double reached)
+{
+    throw io::UsageError(io::formatted(
+        "granular: --end has no effect on the run in %s: its last stage has ended at t = %.12g s, and "
+        "the run with it; a case with a longer or another last stage is a new run",
+        o.output.c_str(), reached));
 }
 
 int report_complete(const Options& o, const Case& c)

@@ -26,6 +26,10 @@ EarlierRun earlier_run(const Options& options, const Case& c);
 /// reached.
 [[noreturn]] void refuse_end(const Options& options, const Case& c, double reached);
 
+/// Throws io::UsageError: the stages of the run in the output directory have ended at the time [s], so that
+/// another end has no effect.
+[[noreturn]] void refuse_end_after_stages(const Options& options, double reached);
+
 /// Reports that the run in the output directory is complete, with --json by its summary. Returns the exit
 /// code. Throws io::IoError.
 int report_complete(const Options& options, const Case& c);

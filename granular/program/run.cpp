@@ -137,6 +137,8 @@ private:
                 throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
             } catch (const ParticleLost&) {  // the first step reports it
             }
+            if (c.stages != nullptr && c.stages->allow_no_step(*c.world) && earlier.end != steps)
+                refuse_end_after_stages(o, c.world->t());
             if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
             if (before_change) begin_change();
             rows = history.rows(c.world->steps(), interval);
@@ -197,7 +199,7 @@ private:
         io::ProgressLine line(o.quiet);
         World& w = *c.world;
         try {
-            if (!resumed) begin_run();
+            if (!resumed) begin_run(true);
             if (resumed && (earlier.end != steps || !from.changes.empty())) begin_other_case();
             while (w.steps() < steps && io::Interrupt::caught() == 0 && !stages_are_over(true)) {
                 w.step();
@@ -217,9 +219,9 @@ private:
             }
             check_state();  // also the forces, which contacts.csv has
             if (c.stages != nullptr && w.steps() >= steps)
-                c.stages->end_run(w, [&](const std::string& text) {
+                c.stages->end_run(w, [&](const char* name, const std::string& text) {
                     line.clear();
-                    warn(text);
+                    warn_of_stage(name, text);
                 });
         } catch (const io::NumericalFailure& e) {
             line.clear();
@@ -251,19 +253,27 @@ private:
     }
 
     /// Records the initial state, in the first stage.
-    void begin_run()
+    void begin_run(bool report)
     {
-        if (c.stages != nullptr) c.stages->begin_run(c, [&](const std::string& text) { warn(text); });
+        if (c.stages != nullptr)
+            c.stages->begin_run(c, [&](const char* name, const std::string& text) {
+                if (report) warn_of_stage(name, text);
+            });
         record();
     }
     /// Before a step: begins the next stage if the present one is over. Returns whether all are.
     bool stages_are_over(bool report)
     {
         if (c.stages == nullptr) return false;
-        c.stages->update(c, [&](const std::string& text) {
-            if (report) warn(text);
+        c.stages->update(c, [&](const char* name, const std::string& text) {
+            if (report) warn_of_stage(name, text);
         });
         return c.stages->have_ended();
+    }
+    void warn_of_stage(const char* name, const std::string& text) const
+    {
+        if (o.strict) throw StrictWarning(name, text + strict_suffix);
+        warn(text);
     }
     bool is_at_end() const
     {
@@ -335,7 +345,7 @@ private:
         io::ProgressLine line(o.quiet);
         if (!load()) {
             sinks.open();
-            begin_run();
+            begin_run(false);
         }
         while (c.world->steps() < last && io::Interrupt::caught() == 0 && !stages_are_over(false)) {
             c.world->step();

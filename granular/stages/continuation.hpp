@@ -5,7 +5,9 @@
 /// An output directory has
 ///
 ///     case.json            the case as it is run
-///     case-given.json      the case file that was given, if options have changed it
+///     case-given.json      the case file that was given, if options have changed it: --resume compares the
+///                          given file with it, because case.json does not show whether the file was edited
+///                          or differs from case.json by the options
 ///     case-1.json, ...     the cases before the first change, the second one, ...
 
 #pragma once

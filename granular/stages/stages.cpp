@@ -27,6 +27,7 @@ std::size_t free_bodies(const World& w)
 Stages::Stages(const Case& c, const Environment& environment) : spec(c.stage_specs), h(c.h)
 {
     Environment here = environment;
+    check_ends(c);
     here.settings.clear(), here.seed.reset(), here.continues = nullptr, here.with_particles = false;
     io::JsonSource source = c.source;
     for (std::size_t k = 0; k < spec.size(); ++k) {
@@ -38,6 +39,23 @@ Stages::Stages(const Case& c, const Environment& environment) : spec(c.stage_spe
             c.source.fail("/stages/" + std::to_string(k) + "/set",
                           (e.pointer.empty() ? "/" : e.pointer) + ": " + e.reason);
         }
+    }
+}
+
+/// Throws io::PlacedError for a stage whose end cannot be after its start.
+void Stages::check_ends(const Case& c) const
+{
+    long earliest = 0;  // start of the stage [steps]; a stage with a condition may end soon
+    for (std::size_t k = 0; k < spec.size(); ++k) {
+        const StageSpec& s = spec[k];
+        if (s.end && steps_in(*s.end) <= earliest)
+            c.source.fail(
+                "/stages/" + std::to_string(k) + "/end",
+                io::formatted("end must be after the stages before, which last until t = %.9g s, got %.9g",
+                              static_cast<double>(earliest) * h, *s.end));
+        if (s.until) continue;
+        if (s.duration) earliest += steps_in(*s.duration);
+        if (s.end) earliest = steps_in(*s.end);
     }
 }
 
@@ -84,7 +102,7 @@ std::vector<int> Stages::moving() const
 
 long Stages::steps_in(double time) const { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
-void Stages::begin_run(Case& c, const std::function<void(const std::string&)>& warn)
+void Stages::begin_run(Case& c, const Warn& warn)
 {
     begin(c);
     report_removal(*c.world, warn);
@@ -95,7 +113,7 @@ void Stages::begin(Case& c)
 {
     const std::size_t k = log.size();
     log.push_back({.start = c.world->steps()});
-    largest_energy = 0;
+    largest_energy = 0, is_met.reset();
     if (!changes[k].pointers.empty()) {
         set_parameters(c, changes[k].to, changes[k].pointers, c.world->t());
         begin_change(c, changes[k].to, changes[k].pointers);
@@ -107,10 +125,11 @@ void Stages::begin(Case& c)
 }
 
 /// Warns if the present stage, which has just begun, removes particles and has found none.
-void Stages::report_removal(const World& w, const std::function<void(const std::string&)>& warn) const
+void Stages::report_removal(const World& w, const Warn& warn) const
 {
     if (!what().remove.empty() && log.back().removed == 0)
-        warn(io::formatted("stage '%s': remove: no particle is in its groups and regions at t = %.9g s",
+        warn("stage_remove",
+             io::formatted("stage '%s': remove: no particle is in its groups and regions at t = %.9g s",
                            what().name.c_str(), w.t()));
 }
 
@@ -136,13 +155,20 @@ bool Stages::is_at_rest(const World& w)
            (!rest.share || energy <= *rest.share * largest_energy);
 }
 
-void Stages::update(Case& c, const std::function<void(const std::string&)>& warn)
+void Stages::update(Case& c, const Warn& warn)
 {
     const World& w = *c.world;
     while (!is_over) {
         const StageSpec& s = what();
         const bool rests = s.until && is_at_rest(w);
         if (!rests && !is_late(w)) return;
+        if (s.until) is_met = rests;
+        if (w.steps() == log.back().start)
+            warn("stage_end",
+                 c.source.place("/stages/" + std::to_string(number()) + "/end") +
+                     io::formatted(": end must be after the start of the stage at t = %.9g s, got "
+                                   "%.9g; the stage has no steps",
+                                   w.t(), *s.end));
         if (!rests && s.until) report_condition(w, warn);
         const Part before = log.back();
         log.back().end = w.steps(), log.back().reason = rests ? condition : duration;
@@ -172,7 +198,7 @@ bool Stages::is_late(const World& w) const
 
 /// Warns that the condition of the present stage is not met. Throws StageFailed if the stage has reached its
 /// duration or its end and has "on_timeout": "fail".
-void Stages::report_condition(const World& w, const std::function<void(const std::string&)>& warn) const
+void Stages::report_condition(const World& w, const Warn& warn) const
 {
     const StageSpec& s = what();
     const double energy = w.kinetic_energy();
@@ -182,12 +208,14 @@ void Stages::report_condition(const World& w, const std::function<void(const std
         s.name.c_str(), w.t(), static_cast<double>(w.steps() - log.back().start) * h, energy, free_bodies(w),
         largest_energy > 0 ? energy / largest_energy : 1.);
     if (s.fails && is_late(w)) throw StageFailed("stage_timeout", message);
-    warn(message);
+    warn("stage_timeout", message);
 }
 
-void Stages::end_run(const World& w, const std::function<void(const std::string&)>& warn)
+void Stages::end_run(const World& w, const Warn& warn)
 {
-    if (!is_over && what().until && !is_at_rest(w)) report_condition(w, warn);
+    if (is_over || !what().until) return;
+    is_met = is_at_rest(w);
+    if (!*is_met) report_condition(w, warn);
 }
 
 void Stages::transfer(io::Archive& a)
@@ -219,12 +247,16 @@ io::Json Stages::summary(double t) const
     constexpr const char* reasons[] = {"end of the run", "condition", "duration"};
     io::Json all = io::Json::array();
     for (std::size_t k = 0; k < log.size(); ++k) {
-        io::Json part{{"name", spec[k].name},
-                      {"start", rounded(static_cast<double>(log[k].start) * h)},
-                      {"end", rounded(log[k].reason == running ? t : static_cast<double>(log[k].end) * h)},
-                      {"reason", reasons[log[k].reason]}};
-        if (!spec[k].remove.empty()) part["removed"] = log[k].removed;
-        all.push_back(std::move(part));
+        io::Json stage = {
+            {"name", spec[k].name},
+            {"start", rounded(static_cast<double>(log[k].start) * h)},
+            {"end", rounded(log[k].reason == running ? t : static_cast<double>(log[k].end) * h)},
+            {"reason", reasons[log[k].reason]}};
+        const bool has_ended = log[k].reason != running;
+        if (spec[k].until && (has_ended || is_met))
+            stage["condition_met"] = has_ended ? log[k].reason == condition : *is_met;
+        if (!spec[k].remove.empty()) stage["removed"] = log[k].removed;
+        all.push_back(std::move(stage));
     }
     return all;
 }

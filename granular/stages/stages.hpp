@@ -22,16 +22,20 @@ public:
     /// Reads the parameters of all stages of a case. Throws io::PlacedError with the place of the stage.
     Stages(const Case& c, const Environment& environment);
 
-    /// Begins the first stage, at the initial state. `warn` receives a message if it removes no particle.
-    void begin_run(Case& c, const std::function<void(const std::string&)>& warn);
-    /// Ends the present stage before a step if it is over, and begins the next one. `warn` receives the
-    /// messages of a condition that is not met in time, and of a `remove` that no particle meets. Throws
-    /// StageFailed.
-    void update(Case& c, const std::function<void(const std::string&)>& warn);
+    /// Receives a warning with its name: stage_timeout of a condition that is not met in time, stage_end of a
+    /// stage that has no steps because its end is past, stage_remove of a `remove` that no particle meets.
+    using Warn = std::function<void(const char* name, const std::string& text)>;
+
+    /// Begins the first stage, at the initial state.
+    void begin_run(Case& c, const Warn& warn);
+    /// Ends the present stage before a step if it is over, and begins the next one. Throws StageFailed.
+    void update(Case& c, const Warn& warn);
     /// After the last step of the run: as update() if the present stage has a condition that is not met.
-    void end_run(const World& w, const std::function<void(const std::string&)>& warn);
+    void end_run(const World& w, const Warn& warn);
     /// Whether the last stage is over, and with it the run
     bool have_ended() const { return is_over; }
+    /// Whether no further step is possible at the present instant, with any end of the run
+    bool allow_no_step(const World& w) const { return is_over || (is_last() && is_late(w)); }
     long number() const { return static_cast<long>(log.size()) - 1; }  ///< of the present stage
     const StageSpec& what() const { return spec[log.size() - 1]; }
     bool is_last() const { return log.size() == spec.size(); }
@@ -65,17 +69,19 @@ private:
     static Change read_change(const Case& c, io::JsonSource& source, const StageSpec& s,
                               const Environment& environment);
     void begin(Case& c);
-    void report_removal(const World& w, const std::function<void(const std::string&)>& warn) const;
+    void report_removal(const World& w, const Warn& warn) const;
     bool is_at_rest(const World& w);
     bool is_late(const World& w) const;
-    void report_condition(const World& w, const std::function<void(const std::string&)>& warn) const;
+    void check_ends(const Case& c) const;
+    void report_condition(const World& w, const Warn& warn) const;
     long steps_in(double time) const;
 
     std::vector<StageSpec> spec;
     std::vector<Change> changes;
     double h;  ///< [s]
     std::vector<Part> log;
-    double largest_energy = 0;  ///< kinetic, of the present stage [J]
+    double largest_energy = 0;   ///< kinetic, of the present stage [J]
+    std::optional<bool> is_met;  ///< whether the condition of the present stage was met at its end
     bool is_over = false;
 };
 

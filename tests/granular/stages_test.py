@@ -7,6 +7,7 @@ Groups of particles: their table, columns, fields and removal; removal of region
 """
 import csv
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -51,7 +52,8 @@ def one_result(runs):
     summary = runs.summary("whole")
     stages = summary["stages"]
     expect([stage["name"] for stage in stages] == ["settle", "shake", "tilt"]
-           and [stage["reason"] for stage in stages] == ["condition", "duration", "duration"], f"{stages}")
+           and [stage["reason"] for stage in stages] == ["condition", "duration", "duration"]
+           and [stage.get("condition_met") for stage in stages] == [True, None, None], f"{stages}")
     expect(0.0105 <= stages[0]["end"] < 0.06 and abs(stages[1]["end"] - stages[0]["end"] - 0.008) < 1e-9
            and abs(summary["counters"]["t"] - stages[0]["end"] - 0.014) < 1e-9 and summary["status"] == "ok", f"{stages}")
     rows = table(runs, "whole")
@@ -139,7 +141,14 @@ def timeouts(runs):
     err = runs.finish(case, "--output", "late")
     message = "stage 'settle': its condition is not met until t = 0.002 s, after 0.002 s: the kinetic energy is "
     expect(f"hilda: warning: {message}" in err and runs.summary("late")["counters"]["t"] == 0.003, f"{err}")
-    expect(runs.summary("late")["stages"][0]["reason"] == "duration", "the reason")
+    first, second = runs.summary("late")["stages"]
+    expect(first["reason"] == "duration" and first["condition_met"] is False and "condition_met" not in second, f"the reason: {first}")
+    for resume in ((), ("--resume",)):
+        runs.refused(case, 4, r"\[stage_timeout\]: " + message + r".*\(a warning, with --strict\)", "--output", "strict", "--strict", *resume)
+    strict = runs.summary("strict")
+    expect(strict["status"] == "stage_timeout" and strict["stages"][0]["condition_met"] is False, f"{strict['stages']}")
+    runs.finish(case, "--output", "strict", "--resume")
+    expect(content(runs, "strict")[1] == content(runs, "late")[1], "without --strict the run continues as without the end by it")
     case = runs.case("fails", **dict(RUN, stages=[dict(stages[0], on_timeout="fail"), stages[1]]))
     for resume in ((), ("--resume",)):
         runs.refused(case, 4, r"\[stage_timeout\]: " + message, "--output", "fails", *resume)
@@ -147,6 +156,9 @@ def timeouts(runs):
     case = runs.case("short", **dict(RUN, end=0.001, stages=stages))
     err = runs.finish(case, "--output", "short")
     expect("hilda: warning: the run has ended in stage 'settle', before its last stage" in err, f"{err}")
+    short = runs.summary("short")["stages"][0]
+    expect(short["reason"] == "end of the run" and short["condition_met"] is False, f"{short}")
+    runs.refused(case, 4, r"\[stage_timeout\]: stage 'settle': its condition is not met until t = 0.001 s", "--output", "end", "--strict")
     last = runs.case("last", **dict(RUN, end=0.002, stages=[dict(stages[0], on_timeout="fail")]))
     runs.refused(last, 4, r"\[stage_timeout\]: " + message, "--output", "last")
     empty = [{"name": "fill", "duration": 0.003, "until": {"share": 1, "interval": 1e-4}}]
@@ -155,6 +167,36 @@ def timeouts(runs):
     jump = [{"name": "first", "duration": 1e-3}, {"name": "second", "set": {"/boundaries/floor/r": [0, 0, "1e-3*(1+t)"]}}]
     runs.refused(runs.case("jump", **dict(RUN, stages=jump)), 4, r"\[stage_motion\]: .*the formula must begin at the place of the boundary",
                  "--output", "jump")
+
+
+def past_ends(runs):
+    """A stage whose end is past, and a later end of a run whose stages are over"""
+    settle = {"name": "settle", "until": {"share": 1, "interval": 2e-3}}
+    stages = [settle, {"name": "past", "end": 1e-3, "set": {"/gravity": [0, 0, 0]}}, {"name": "last", "duration": 1e-3}]
+    case = runs.case("past", **dict(RUN, stages=stages))
+    message = r"past.json:1:\d+ \(/stages/1/end\): end must be after the start of the stage at t = 0.002 s, got 0.001; the stage has no steps"
+    err = runs.finish(case, "--output", "past")
+    expect(re.search("hilda: warning: " + message, err), f"{err}")
+    past = runs.summary("past")["stages"]
+    expect([(stage["start"], stage["end"]) for stage in past] == [(0, 0.002), (0.002, 0.002), (0.002, 0.003)], f"{past}")
+    for resume in ((), ("--resume",)):
+        runs.refused(case, 4, r"\[stage_end\]: " + message, "--output", "strict_past", "--strict", *resume)
+
+    over = runs.case("over", **dict(RUN, end=0.002, stages=[{"name": "one", "duration": 0.002}]))
+    runs.finish(over, "--output", "over")
+    for run, ends, t in ("past", (0.0025, 0.2), "0.003"), ("over", (0.01,), "0.002"):
+        before = content(runs, run)
+        for end in ends:
+            runs.refused(run, 2, f"granular: --end has no effect on the run in {run}: its last stage has ended at t = {t} s, and the run with it",
+                         "--output", run, "--resume", "--end", str(end))
+        expect(content(runs, run) == before, "nothing changes")
+        expect("the run is complete already" in runs.finish(run, "--output", run, "--resume"), "a complete run")
+    # with a last stage that lasts to the end of the run, a later end extends it
+    on = runs.case("on", **dict(RUN, end=0.002, stages=[{"name": "one", "duration": 0.001}, {"name": "two"}]))
+    runs.finish(on, "--output", "on")
+    runs.refused(on, 2, "--end must be after t = 0.002 s, which the run in on has reached, got 0.0015", "--output", "on", "--resume", "--end", "0.0015")
+    runs.finish(on, "--output", "on", "--resume", "--end", "0.003")
+    expect(runs.summary("on")["counters"]["t"] == 0.003, "a later end")
 
 
 def names(runs):
@@ -211,6 +253,10 @@ def errors(runs):
             ({"type": "cylinder", "r": [0, 0, 0], "axis": [0, 0, 1], "radius": 0, "length": 1}, "/radius", "radius must be positive, got 0")):
         refused(f"/stages/1/remove/0{place}", message, one, {"name": "two", "remove": [removal]})
     refused("/stages/1/name", 'two stages have the same name, got "one"', one, one)
+    refused("/stages/1/end", "end must be after the stages before, which last until t = 0.002 s, got 0.0015", dict(one, duration=2e-3),
+            {"name": "two", "end": 1.5e-3})
+    refused("/stages/2/end", "end must be after the stages before, which last until t = 0.003 s, got 0.003", dict(one, end=3e-3),
+            {"name": "two", "until": {"share": 1}}, {"name": "three", "end": 3e-3})
     refused("/stages/0/end", "end must not be given together with duration", dict(one, duration=1, end=1))
     refused("/stages/0/on_timeout", "on_timeout is only for a stage with until and a duration or end", dict(one, on_timeout="fail"))
     refused("/stages/0/until", "one of the keys kinetic_energy and share is required", dict(one, until={}))
@@ -291,6 +337,7 @@ def cuts(runs):
     expect(set(both) == {key for key, r in place.items() if whole[key]["group"] != number["lid"] and not box(r)}, "groups and regions")
     err = runs.finish(runs.case("none", **dict(rest, stages=[{"name": "cut", "remove": [far]}])), "--output", "none")
     expect("stage 'cut': remove: no particle is in its groups and regions at t = 0 s" in err, f"{err}")
+    runs.refused("none", 4, r"\[stage_remove\]: stage 'cut': remove: no particle is in its groups and regions at t = 0 s", "--output", "no", "--strict")
     expect(runs.summary("none")["stages"][0]["removed"] == 0 and len(table(runs, "none", "particles.csv")) == len(whole), "nothing is cut")
 
 
@@ -336,6 +383,7 @@ def main():
         runs = Runs(sys.argv[1], folder)
         closed_forms(runs)
         timeouts(runs)
+        past_ends(runs)
         names(runs)
         errors(runs)
         whole_entries(runs)

@@ -53,15 +53,15 @@ Selection read_selection(ObjectReader o)
     return s;
 }
 
-std::vector<std::uint32_t> selected(const World& w, const Groups& groups,
+std::vector<std::uint32_t> selected(const World& w, const Groups* groups,
                                     const std::vector<Selection>& selections)
 {
     std::vector<std::uint32_t> ids;
     const auto take = [&](std::uint32_t id, const Vec3& x) {
-        const int number = groups.of(id);
+        const int number = groups != nullptr ? groups->of(id) : Groups::none;
         const auto contains = [&](const Selection& s) {
             return (s.group.empty() ||
-                    (number != Groups::none && groups.names[static_cast<std::size_t>(number)] == s.group)) &&
+                    (number != Groups::none && groups->names[static_cast<std::size_t>(number)] == s.group)) &&
                    s.region.contains(x);
         };
         if (std::any_of(selections.begin(), selections.end(), contains)) ids.push_back(id);

@@ -35,8 +35,8 @@ struct Selection {
 Selection read_selection(ObjectReader o);
 
 /// The ids of the particles that one selection at least contains, in ascending order; of a clump, that of its
-/// first particle
-std::vector<std::uint32_t> selected(const World& w, const Groups& groups,
+/// first particle. Without groups (nullptr) no selection has a group.
+std::vector<std::uint32_t> selected(const World& w, const Groups* groups,
                                     const std::vector<Selection>& selections);
 
 }  // namespace hilda::granular

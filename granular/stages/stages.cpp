@@ -120,7 +120,7 @@ void Stages::begin(Case& c)
     }
     if (spec[k].remove.empty()) return;
     const auto before = static_cast<std::int64_t>(c.world->count());
-    c.world->remove(selected(*c.world, *c.groups, spec[k].remove));
+    c.world->remove(selected(*c.world, c.groups.get(), spec[k].remove));
     log.back().removed = before - static_cast<std::int64_t>(c.world->count());
 }
 

@@ -331,6 +331,11 @@ def cuts(runs):
             stages = runs.summary("cut")["stages"]
             expect(stages[1]["removed"] == len(whole) - len(expected) > 0 and "removed" not in stages[0], f"{cut}: {stages}")
             runs.remove("cut")
+    # a case without groups
+    fill = [{key: value for key, value in entry.items() if key != "group"} for entry in rest["fill"]]
+    plain = left("plain", stages=[{"name": "cut", "remove": [shapes[0][0]]}], clumps=[], particles=[], fill=fill)
+    singles = [key for key, row in whole.items() if row["clump"] == "-1"]
+    expect(len(plain) == len([key for key in singles if not box(place[key])]) < len(singles), f"without groups: {len(plain)} remain")
     # several at once, from the initial state; a region in which nothing is
     far = {"type": "half_space", "r": [0, 0, 0.075], "normal": [0, 0, 1]}
     both = left("both", stages=[{"name": "cut", "remove": ["lid", far, shapes[0][0]]}])

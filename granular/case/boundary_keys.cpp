@@ -38,6 +38,7 @@ NamedBoundary read_motion(ObjectReader& o, const std::string& name)
 }
 
 /// The sides of a box as planes, without those that `open` lists
+// NOLINTNEXTLINE(performance-unnecessary-value-param): the type of BoundaryType::read
 std::vector<NamedBoundary> read_box(ObjectReader& o, NamedBoundary box)
 {
     const Vec3 low = o.vec3("low"), high = o.vec3("high");

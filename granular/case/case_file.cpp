@@ -383,7 +383,9 @@ private:
     {
         for (const auto& [n, o] : bounds)
             if (!n.part_of.empty())
-                o.located([&] { out.world->set_part(n.motion.boundary, find(n.part_of)->motion.boundary); });
+                o.located([&, &part = n] {
+                    out.world->set_part(part.motion.boundary, find(part.part_of)->motion.boundary);
+                });
         out.world->set_boundary_names(out.boundaries);
     }
 

@@ -146,7 +146,7 @@ public:
     Samples(const DrumRun& run, std::size_t grains) : of(run), d(run.drum), flight(grains)
     {
         side = static_cast<int>(std::ceil(d.radius / (2 * d.R)));
-        volume.assign(static_cast<std::size_t>(4 * side * side), 0);
+        volume.assign(index(2 * side, 0), 0);
     }
 
     /// `before`: the grains a time tau earlier, in the same order
@@ -162,8 +162,7 @@ public:
             flight[k] = falls ? flight[k] + 1 : 0;
             if (flight[k] >= long_flight) airborne += (flight[k] == long_flight ? long_flight : 1) / n;
             const int i = cell(p.r.x), j = cell(p.r.z);
-            if (i >= 0 && j >= 0 && i < 2 * side && j < 2 * side)
-                volume[static_cast<std::size_t>(j * 2 * side + i)] += of_grain(d);
+            if (i >= 0 && j >= 0 && i < 2 * side && j < 2 * side) volume[index(j, i)] += of_grain(d);
             const double rho = std::hypot(p.r.x, p.r.z);
             const Vec3 drum{omega * p.r.z, 0, -omega * p.r.x};
             if (rho > d.radius - 3 * d.R && (p.v - drum).norm() < 0.2 * omega * rho) {
@@ -189,12 +188,16 @@ public:
 private:
     int cell(double x) const { return static_cast<int>(std::floor(x / (2 * d.R))) + side; }
 
+    /// Of a cell in row j and column i
+    std::size_t index(int j, int i) const
+    {
+        return static_cast<std::size_t>(j) * 2 * static_cast<std::size_t>(side) + static_cast<std::size_t>(i);
+    }
+
     double surface(int i) const
     {
         constexpr double limit = 0.3;
-        const auto fraction = [&](int j) {
-            return volume[static_cast<std::size_t>(j * 2 * side + i)] / (count * 4 * d.R * d.R * d.width);
-        };
+        const auto fraction = [&](int j) { return volume[index(j, i)] / (count * 4 * d.R * d.R * d.width); };
         int densest = 0;
         for (int j = 0; j < 2 * side; ++j)
             if (fraction(j) > fraction(densest)) densest = j;

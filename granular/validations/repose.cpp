@@ -139,21 +139,24 @@ HeapSurface surface_of(const std::vector<BedSphere>& spheres, const Heap& heap)
     const auto count = [&](double length) { return static_cast<int>(std::lround(length / (heap.d / 4))); };
     const int nx = count(2 * heap.edge()), ny = count(heap.period());
     const double dx = 2 * heap.edge() / nx, dy = heap.period() / ny;
-    std::vector<double> highest(static_cast<std::size_t>(nx * ny), 0);
+    const auto index = [ny](int i, int j) {
+        return static_cast<std::size_t>(i) * static_cast<std::size_t>(ny) + static_cast<std::size_t>(j);
+    };
+    std::vector<double> highest(index(nx, 0), 0);
     for (const BedSphere& s : spheres) {
         const auto first = [](double x, double step) { return static_cast<int>(std::ceil(x / step - 0.5)); };
         const double x = s.r.x + heap.edge(), y = s.r.y + half, R = s.radius;  // from the first corner
         for (int i = std::max(0, first(x - R, dx)); i < std::min(nx, first(x + R, dx)); ++i)
             for (int j = first(y - R, dy); j < first(y + R, dy); ++j) {
                 const double a = (i + 0.5) * dx - x, b = (j + 0.5) * dy - y, c = R * R - a * a - b * b;
-                double& z = highest[static_cast<std::size_t>(i * ny + ((j % ny) + ny) % ny)];
+                double& z = highest[index(i, ((j % ny) + ny) % ny)];
                 if (c > 0) z = std::max(z, s.r.z + std::sqrt(c));
             }
     }
     HeapSurface out;
     for (int i = 0; i < nx; ++i) {
         double sum = 0;
-        for (int j = 0; j < ny; ++j) sum += highest[static_cast<std::size_t>(i * ny + j)];
+        for (int j = 0; j < ny; ++j) sum += highest[index(i, j)];
         out.x.push_back((i + 0.5) * dx - heap.edge()), out.z.push_back(sum / ny);
     }
     return out;

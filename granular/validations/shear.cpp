@@ -113,7 +113,8 @@ struct Box {
             Particle p;
             p.radius = R;
             p.r.x = place(k % row), p.r.y = place(k / row % row);
-            p.r.z = -box.lower + 1.05 * R + k / (row * row) * spacing + in(free);
+            const int layer = k / (row * row);
+            p.r.z = -box.lower + 1.05 * R + layer * spacing + in(free);
             p.v = {in(0.1), in(0.1), in(0.1)};
             world.add(p);
         }

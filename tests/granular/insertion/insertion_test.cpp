@@ -153,7 +153,8 @@ TEST_CASE("particles are inserted at their rate, without contact, between two ti
     insertions.start(world, 1);
     for (int k = 0; k <= 1000; ++k) {
         // before the steps 100, 150, ... the particles are inserted that are due until then
-        const double until = std::min((k - 1) / 50 * 50 * o.h, s.flow.to);
+        const int intervals = (k - 1) / 50;
+        const double until = std::min(intervals * 50 * o.h, s.flow.to);
         const auto due = k > 100 ? std::lround(s.flow.rate * (until - s.from)) : 0;
         REQUIRE(world.count() == static_cast<std::size_t>(due));
         REQUIRE(insertions.count() == due);
@@ -214,12 +215,14 @@ TEST_CASE("an insertion does not change the other particles by a bit", "[granula
         Boundary floor;
         floor.r = {0, 0, 0.001};
         world.add(floor);
-        for (int k = 0; k < 12; ++k)
-            world.add(Particle{
-                .r = {0.005 + 0.00199 * (k % 3), 0.005 + 0.002 * (k / 3 % 2), 0.0025 + 0.0019999 * (k / 6)},
-                .radius = R,
-                .v = {0.1, 0.01 * k, 0},
-                .omega = {1. * k, 2, 3}});
+        for (int k = 0; k < 12; ++k) {
+            const int row = k / 3 % 2, layer = k / 6;
+            world.add(
+                Particle{.r = {0.005 + 0.00199 * (k % 3), 0.005 + 0.002 * row, 0.0025 + 0.0019999 * layer},
+                         .radius = R,
+                         .v = {0.1, 0.01 * k, 0},
+                         .omega = {1. * k, 2, 3}});
+        }
         Insertions insertions;
         InsertionSpec s = in_box({0.02, 0.02, 0.02}, {0.038, 0.038, 0.038});
         s.count = count, s.first_step = 37, s.flow.rate = 1e4, s.from = 37e-5, s.interval = 31;

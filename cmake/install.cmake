@@ -89,15 +89,15 @@ hilda_install_headers(
     FOLDERS io lie dae contact reference studies/framework studies/running studies/problems granular/force_models
     FILES studies/program/run_model.hpp
         granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/par.hpp granular/backend/real.hpp
-        granular/clumps/clump.hpp granular/clumps/clump_template.hpp granular/clumps/sphere_union.hpp
+        granular/clumps/clump_template.hpp granular/clumps/sphere_union.hpp
         granular/core/attached.hpp granular/core/boundary.hpp granular/core/boundary_blocks.hpp
-        granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
+        granular/core/clump.hpp granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
         granular/core/material.hpp granular/core/neighbours/cells.hpp granular/core/neighbours/neighbours.hpp
         granular/core/orientation.hpp granular/core/pair_law.hpp granular/core/particles.hpp
         granular/core/surfaces/meridian.hpp granular/core/surfaces/mesh_view.hpp granular/core/surfaces/meshes.hpp
-        granular/core/surfaces/surfaces.hpp granular/core/watch.hpp granular/mesh/mesh_file.hpp granular/mesh/mesh_shapes.hpp
-        granular/mesh/triangle_mesh.hpp granular/world/boundary_drawing.hpp granular/world/double_world.hpp
-        granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
+        granular/core/surfaces/surfaces.hpp granular/core/surfaces/triangle_mesh.hpp granular/core/watch.hpp
+        granular/mesh/mesh_file.hpp granular/mesh/mesh_shapes.hpp
+        granular/world/boundary_drawing.hpp granular/world/double_world.hpp granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL
     EXCEPT studies/running/tables/hdf5_file.hpp studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
 install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the layout of the source tree: allowed includes between the rooms, the folders of each room, the
-// number of units in a folder, the width of comments, no catch-all folders, and the entries of the top level.
+// Tests of the layout of the source tree: allowed includes between the rooms and between the folders of
+// granular, the folders of each room, the number of units in a folder, the width of comments, no catch-all folders, and the entries of the top level.
 #include "tests/support/paths.hpp"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fs = std::filesystem;
@@ -34,6 +35,30 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
     {"tests", {"io", "lie", "dae", "contact", "granular", "reference", "studies"}},
 };
 
+/// The folders of granular that each of them may include, besides itself. A folder stands for its subfolders
+/// as well.
+///
+/// backend and core include each other: core computes with the numbers and parallel loops of backend, and the
+/// engines in backend are the loops over the particles of core. The laws in force_models include core, and
+/// core has them by the generated header granular/force_models.hpp.
+const std::map<std::string, std::set<std::string>> granular_folders = {
+    {"backend", {"core"}},
+    {"core", {"backend"}},
+    {"force_models", {"backend", "core"}},
+    {"mesh", {"backend", "core"}},
+    {"clumps", {"backend", "core", "mesh"}},
+    {"world", {"backend", "core", "clumps", "mesh"}},
+    {"fields", {"backend", "core", "world"}},
+    {"reading", {"backend", "clumps", "core", "world"}},
+    {"insertion", {"backend", "clumps", "core", "mesh", "reading", "world"}},
+    {"case", {"backend", "clumps", "core", "fields", "insertion", "mesh", "reading", "world"}},
+    {"stages", {"backend", "case", "core", "insertion", "reading", "world"}},
+    {"validations", {"backend", "clumps", "core", "insertion", "mesh", "world"}},
+    {"program", {"backend", "case", "core", "fields", "reading", "stages", "validations", "world"}},
+    {"benchmarks", {"mesh", "world"}},
+};
+const std::pair<std::string, std::string> mutual_folders = {"backend", "core"};
+
 /// The folders of each room, relative to it; "" is the room itself.
 const std::map<std::string, std::set<std::string>> folders = {
     {"io", {"", "formats"}},
@@ -47,6 +72,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "backend",
       "benchmarks",
       "case",
+      "case/particles",
       "cases",
       "clumps",
       "core",
@@ -62,6 +88,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "insertion",
       "mesh",
       "program",
+      "reading",
       "stages",
       "validations",
       "validations/comparison",
@@ -90,6 +117,23 @@ const std::map<std::string, std::set<std::string>> forbidden_libraries = {
     {"granular", {"gsl", "Eigen", "nlohmann", "ida", "nvector", "sundials", "sunmatrix", "sunlinsol"}},
 };
 
+/// The folder of granular that contains a file; empty for files of granular itself, such as generated headers
+std::string granular_folder(const std::string& path)
+{
+    const std::size_t begin = std::string("granular/").size(), end = path.find('/', begin);
+    return end == std::string::npos ? "" : path.substr(begin, end - begin);
+}
+
+/// The reason why `file` must not include `header` (both in granular); empty if it may.
+std::string granular_include_error(const std::string& file, const std::string& header)
+{
+    const std::string from = granular_folder(file), to = granular_folder(header);
+    if (to.empty() || from == to) return "";
+    const auto allowed = granular_folders.find(from);
+    if (allowed != granular_folders.end() && allowed->second.count(to) == 1) return "";
+    return "granular/" + from + " must not include granular/" + to;
+}
+
 /// The reason why `file` must not include `header` (both relative to the root of the tree); empty if it may.
 std::string include_error(const std::string& file, const std::string& header)
 {
@@ -102,6 +146,7 @@ std::string include_error(const std::string& file, const std::string& header)
         return room + " must not include " + other;
     if (file.starts_with("studies/framework/") && header.starts_with("studies/program/"))
         return "studies/framework must not include studies/program";
+    if (room == "granular" && other == "granular") return granular_include_error(file, header);
     if (rooms.count(other) == 0 || other == room) return "";
     if (room == "tests" && other == "studies" && header.ends_with(".cpp"))
         return "is a source file of studies, not a header";
@@ -171,14 +216,43 @@ TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
     CHECK(include_error("io/files.cpp", "lie/check.hpp") == "io must not include lie");
     CHECK(include_error("io/files.cpp", "Eigen/Core") == "io must not include Eigen");
 
-    CHECK(include_error("granular/case/object_reader.cpp", "io/expression.hpp") == "");
+    CHECK(include_error("granular/reading/object_reader.cpp", "io/expression.hpp") == "");
+    CHECK(include_error("granular/core/surfaces/meshes.hpp", "granular/mesh/mesh_file.hpp") ==
+          "granular/core must not include granular/mesh");
+    CHECK(include_error("granular/new/x.hpp", "granular/core/watch.hpp") ==
+          "granular/new must not include granular/core");
+    CHECK(include_error("granular/case/particles/fill.hpp", "granular/insertion/sizes.hpp") == "");
+    CHECK(include_error("granular/case/particles/fill.hpp", "granular/case/case_file.hpp") == "");
+    CHECK(include_error("granular/core/pair_law.hpp", "granular/force_models.hpp") == "");
     CHECK(include_error("dae/model.hpp", "lie/system.hpp") == "");
     CHECK(include_error("tests/studies/table_test.cpp", "studies/framework/table.hpp") == "");
     CHECK(include_error("reference/motions/closed_form.cpp", "gsl/gsl_odeiv2.h") == "");
     CHECK(include_error("reference/solvers/ida_solver.cpp", "ida/ida.h") == "");
 }
 
-TEST_CASE("each room includes only the rooms and libraries that it may", "[house]")
+TEST_CASE("the folders of granular that a folder may include do not include it", "[house]")
+{
+    std::map<std::string, std::set<std::string>> open = granular_folders;
+    REQUIRE(open.at(mutual_folders.first).erase(mutual_folders.second) == 1);
+    REQUIRE(open.at(mutual_folders.second).count(mutual_folders.first) == 1);
+    // Removes a folder all of whose folders are removed, until there is none.
+    const auto is_lowest = [&](const auto& folder) {
+        return std::none_of(folder.second.begin(), folder.second.end(),
+                            [&](const std::string& lower) { return open.count(lower) == 1; });
+    };
+    for (auto at = std::find_if(open.begin(), open.end(), is_lowest); at != open.end();
+         at = std::find_if(open.begin(), open.end(), is_lowest))
+        open.erase(at);
+    for (const auto& [folder, lower] : open)
+        FAIL_CHECK("granular/" << folder << " is in a cycle or above one");
+    for (const auto& [folder, lower] : granular_folders) {
+        INFO("granular/" << folder);
+        CHECK(folders.at("granular").count(folder) == 1);
+        for (const std::string& other : lower) CHECK(granular_folders.count(other) == 1);
+    }
+}
+
+TEST_CASE("each room includes only the rooms, folders and libraries that it may", "[house]")
 {
     static const std::regex include_line(R"re(^\s*#\s*include\s*["<]([^">]+)[">])re");
     int files_read = 0;

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/clumps/clump.hpp"
 #include "granular/core/attached.hpp"
+#include "granular/core/clump.hpp"
 #include "granular/core/integrator.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
 #include "granular/core/watch.hpp"

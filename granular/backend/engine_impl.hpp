@@ -3,7 +3,7 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
-#include "granular/core/hand_over.hpp"
+#include "granular/core/surfaces/hand_over.hpp"
 #include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/boundary_keys.hpp"
 
-#include "granular/core/rigid_body.hpp"
+#include "granular/reading/inertia_keys.hpp"
 
 #include <array>
 #include <cmath>
@@ -252,52 +252,7 @@ const bool registered =
           .example = R"("name": "dumb-bell", "from_parts": true)"},
          read_body_of_parts});
 
-/// A matrix of three rows, row by row
-std::array<double, 9> matrix(ObjectReader& o, const std::string& key)
-{
-    std::array<double, 9> M{};
-    const io::Json::List& rows = o.list(key, true);
-    const auto fail = [&] {
-        o.fail(key, key + " must be one number, three numbers or three rows of three numbers, got " +
-                        io::described(*o.find(key)));
-    };
-    if (rows.size() != 3) fail();
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (rows[i].list() == nullptr || rows[i].size() != 3) fail();
-        const std::string at = o.pointer(key) + '/' + std::to_string(i) + '/';
-        for (std::size_t j = 0; j < 3; ++j)
-            M[3 * i + j] = o.number_at((*rows[i].list())[j], at + std::to_string(j), key);
-    }
-    o.record(key, *o.find(key));
-    return M;
-}
-
 }  // namespace
-
-Inertia read_inertia(ObjectReader& o)
-{
-    const io::Json* v = o.find("inertia");
-    if (v->list() == nullptr) return o.not_negative("inertia");
-    Inertia J;
-    if (v->size() == 0 || v->list()->front().list() == nullptr) {
-        const Vec3 principal = o.vec3("inertia");
-        J.xx = principal.x, J.yy = principal.y, J.zz = principal.z;
-    } else {
-        const auto M = matrix(o, "inertia");
-        for (const auto& [i, j] : {std::pair{0u, 1u}, {1u, 2u}, {2u, 0u}})
-            if (M[3 * i + j] != M[3 * j + i])
-                o.fail("inertia", "inertia must be symmetric, got " + io::shortest(M[3 * i + j]) + " and " +
-                                      io::shortest(M[3 * j + i]));
-        J = Inertia(std::array{M[0], M[4], M[8], M[1], M[5], M[6]});
-    }
-    if (!is_inertia(J))
-        o.fail(
-            "inertia",
-            "the principal moments of inertia must be positive, and none larger than the sum of the others, "
-            "got " +
-                described(*v));
-    return J;
-}
 
 std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid)
 {

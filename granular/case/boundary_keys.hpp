@@ -3,9 +3,10 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
+#include "granular/case/motion.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 #include "granular/mesh/solid_body.hpp"
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/reading/object_reader.hpp"
 #include "io/type_schema.hpp"
 
 #include <optional>
@@ -55,10 +56,6 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary b, double
                                         double second_radius);
 /// The keys of read_frustum(). `needs_length`: whether length is required
 std::vector<io::KeySchema> frustum_keys(bool needs_length);
-
-/// Reads the key inertia: one number, three principal moments, or a symmetric matrix of three rows. Throws
-/// io::PlacedError.
-Inertia read_inertia(ObjectReader& o);
 
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.

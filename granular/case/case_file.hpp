@@ -3,11 +3,11 @@
 
 #pragma once
 
-#include "granular/case/groups.hpp"
 #include "granular/case/motion.hpp"
 #include "granular/case/output_spec.hpp"
+#include "granular/case/stage_keys.hpp"
 #include "granular/insertion/insertion.hpp"
-#include "granular/stages/stage_spec.hpp"
+#include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
 #include "io/json_source.hpp"
 

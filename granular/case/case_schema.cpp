@@ -3,8 +3,8 @@
 #include "granular/case/case_schema.hpp"
 
 #include "granular/case/boundary_keys.hpp"
-#include "granular/case/fill.hpp"
 #include "granular/case/pair_keys.hpp"
+#include "granular/case/particles/fill.hpp"
 #include "granular/insertion/sizes.hpp"
 
 #include <algorithm>

@@ -3,19 +3,13 @@
 
 #pragma once
 
+#include "granular/reading/formula.hpp"
 #include "granular/world/world.hpp"
 #include "io/error.hpp"
 
 #include <optional>
 
 namespace hilda::granular {
-
-using Formula = std::function<double(double t)>;
-
-struct VectorFormula {
-    std::array<Formula, 3> of;
-    Vec3 operator()(double t) const { return {of[0](t), of[1](t), of[2](t)}; }
-};
 
 /// Prescribed motion and load of one boundary, set before each step of size h:
 ///

@@ -3,8 +3,9 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
 #include "granular/case/output_spec.hpp"
+#include "granular/reading/object_reader.hpp"
+#include "granular/world/world.hpp"
 
 #include <string>
 

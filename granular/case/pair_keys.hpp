@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
 #include "granular/core/pair_law.hpp"
+#include "granular/reading/object_reader.hpp"
 
 namespace hilda::granular {
 

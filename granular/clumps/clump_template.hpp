@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/clumps/clump.hpp"
 #include "granular/clumps/sphere_union.hpp"
+#include "granular/core/clump.hpp"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "granular/clumps/clump.hpp"
+#include "granular/core/clump.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
 
 namespace hilda::granular {

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/case/groups.hpp"
 #include "granular/fields/field_sums.hpp"
+#include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
 
 namespace hilda::granular {

@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include "granular/case/groups.hpp"
 #include "granular/insertion/region.hpp"
 #include "granular/insertion/sizes.hpp"
+#include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
 
 #include <cstdint>

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
+#include "granular/reading/object_reader.hpp"
 
 namespace hilda::granular {
 

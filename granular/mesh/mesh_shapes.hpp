@@ -8,7 +8,7 @@
 
 #pragma once
 
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 
 #include <array>
 #include <vector>

@@ -9,7 +9,7 @@
 
 #include "granular/validations/cratering.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"

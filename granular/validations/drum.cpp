@@ -23,7 +23,7 @@
 
 #include "granular/validations/drum.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"
 #include "io/message.hpp"

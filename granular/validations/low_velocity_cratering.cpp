@@ -19,7 +19,7 @@
 
 #include "granular/validations/low_velocity_cratering.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"

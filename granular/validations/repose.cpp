@@ -8,7 +8,7 @@
 
 #include "granular/validations/repose.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "granular/validations/settling.hpp"
 #include "granular/validations/straight_line.hpp"

@@ -11,7 +11,7 @@
 
 #include "granular/validations/shear.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"

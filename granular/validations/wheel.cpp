@@ -19,7 +19,7 @@
 
 #include "granular/validations/wheel.hpp"
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "granular/validations/bed_geometry.hpp"
 #include "granular/validations/settling.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/world/output.hpp"
 
-#include "granular/case/groups.hpp"
+#include "granular/world/groups.hpp"
 #include "io/formats/csv.hpp"
 #include "io/formats/vtk.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/rigid_body.hpp"
 #include "granular/world/value_text.hpp"
 #include "granular/world/world_impl.hpp"

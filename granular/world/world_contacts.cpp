@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Queries of contacts at t. Loads are computed again from copies of the histories, so that a query does not
 // change the state.
-#include "granular/core/hand_over.hpp"
+#include "granular/core/surfaces/hand_over.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/case/case_file.hpp"
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 #include "io/error.hpp"
 #include "tests/fuzz/targets.hpp"
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "granular/core/surfaces/mesh_view.hpp"
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 
 namespace hilda::granular {
 

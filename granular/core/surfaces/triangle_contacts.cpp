@@ -2,7 +2,7 @@
 #include "granular/core/surfaces/triangle_contacts.hpp"
 
 #include "granular/core/contact_packs.hpp"
-#include "granular/core/hand_over.hpp"
+#include "granular/core/surfaces/hand_over.hpp"
 #include "granular/core/sweep.hpp"
 
 #include <algorithm>

@@ -14,7 +14,7 @@
 
 #pragma once
 
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/validations/bed_geometry.hpp"
 #include "granular/world/world.hpp"
 

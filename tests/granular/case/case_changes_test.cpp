@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Entries in which two cases differ, those that a run can change, and groups of particles.
 #include "granular/stages/case_changes.hpp"
-#include "granular/case/groups.hpp"
+#include "granular/world/groups.hpp"
 #include "io/archive.hpp"
 #include "io/json_source.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reading of case files: entries, defaults, changes of entries, and errors with their place.
 #include "granular/case/case_file.hpp"
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Worlds with clumps on all engines and from checkpoints.
 #include "granular/backend/engine_impl.hpp"
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/loops.hpp"
 #include "granular/core/neighbours/neighbours_impl.hpp"
 #include "tests/support/grains.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The motion of clumps: one sphere is a particle, free clumps in closed form, collisions, outflow.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/rigid_body.hpp"
 #include "io/error.hpp"
 #include "tests/support/grains.hpp"

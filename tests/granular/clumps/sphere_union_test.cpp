@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mass properties of unions of spheres: closed forms, and independence of orientation and of hidden spheres.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/clumps/clump_template.hpp"
 #include "granular/core/rigid_body.hpp"
 #include "io/error.hpp"

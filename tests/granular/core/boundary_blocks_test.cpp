@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The boundaries near blocks of cells, against all boundaries.
 #include "granular/core/boundary_blocks.hpp"
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/surfaces/surfaces.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "tests/support/grains.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finite surfaces of revolution: distance, normal, curvature and the number of contacts, against sampled
 // points.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/boundary.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Neighbour search among particles of very different sizes, against all pairs.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>

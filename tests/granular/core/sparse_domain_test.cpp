@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Domains that are much larger than the bed of particles in them.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "tests/support/grains.hpp"
 
 #include <catch2/catch.hpp>

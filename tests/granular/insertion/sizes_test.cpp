@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Size distributions: moments and quantiles against closed forms, shares of number and of mass, and refusals.
 #include "granular/insertion/sizes.hpp"
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 #include "io/error.hpp"
 
 #include <catch2/catch.hpp>

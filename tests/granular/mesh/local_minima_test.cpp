@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The local minima of the distance to a mesh: one contact for each, whichever triangle it is on.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/core/surfaces/meshes.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "tests/support/grains.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts of grains with meshes, against planes and analytic spheres.
-#include "granular/case/split_mix.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 #include "granular/world/world_impl.hpp"
 #include "tests/support/grains.hpp"

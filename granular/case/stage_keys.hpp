@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/stages/selection.hpp"
+#include "granular/case/selection.hpp"
 
 #include <optional>
 #include <string>

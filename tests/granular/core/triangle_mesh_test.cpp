@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangle meshes: their faults, open edges and mass properties.
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 
 #include "io/error.hpp"
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/case/motion.hpp"
+#include "granular/reading/formula.hpp"
 #include "io/object_reader.hpp"
 
 namespace hilda::granular {

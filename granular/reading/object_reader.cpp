@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/case/object_reader.hpp"
+#include "granular/reading/object_reader.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -3,10 +3,10 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
-#include "granular/case/split_mix.hpp"
-#include "granular/clumps/clump_keys.hpp"
+#include "granular/backend/split_mix.hpp"
 #include "granular/insertion/sizes.hpp"
+#include "granular/reading/clump_keys.hpp"
+#include "granular/reading/object_reader.hpp"
 #include "io/type_schema.hpp"
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/mesh/triangle_mesh.hpp"
+#include "granular/core/surfaces/triangle_mesh.hpp"
 
 #include "io/error.hpp"
 #include "io/json.hpp"

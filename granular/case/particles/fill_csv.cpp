@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Fill csv: particles of a table.
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 #include "io/archive.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/case/groups.hpp"
+#include "granular/world/groups.hpp"
 
 #include "io/archive.hpp"
 

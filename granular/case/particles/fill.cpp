@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The keys of an entry of `stages`.
-#include "granular/stages/stage_spec.hpp"
+#include "granular/case/stage_keys.hpp"
 
 namespace hilda::granular {
 

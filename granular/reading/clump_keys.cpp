@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/clumps/clump_keys.hpp"
+#include "granular/reading/clump_keys.hpp"
 
-#include "granular/case/boundary_keys.hpp"
+#include "granular/reading/inertia_keys.hpp"
 #include "io/error.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Fills lattice and hcp: particles on a simple cubic or a hexagonal lattice.
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 
 #include <algorithm>
 #include <cmath>

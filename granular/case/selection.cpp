@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/stages/selection.hpp"
+#include "granular/case/selection.hpp"
 
-#include "granular/case/groups.hpp"
+#include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Fill poisson: random particles without contact.
-#include "granular/case/fill.hpp"
+#include "granular/case/particles/fill.hpp"
 
 #include <algorithm>
 #include <cmath>

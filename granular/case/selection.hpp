@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/case/object_reader.hpp"
+#include "granular/reading/object_reader.hpp"
 
 #include <string>
 #include <vector>

@@ -5,6 +5,7 @@
 
 #include "granular/case/motion.hpp"
 #include "granular/case/output_spec.hpp"
+#include "granular/case/settings.hpp"
 #include "granular/case/stage_keys.hpp"
 #include "granular/insertion/insertion.hpp"
 #include "granular/world/groups.hpp"
@@ -15,15 +16,6 @@
 #include <optional>
 
 namespace hilda::granular {
-
-/// A change of one entry of a case: "/json/pointer=VALUE", and the option that gave it, for messages. In the
-/// pointer the name of a boundary or an insertion can stand for its number.
-struct Setting {
-    std::string change, origin = {};
-};
-
-/// A JSON pointer, or a change of an entry, with the number of a boundary or insertion in place of its name
-std::string with_numbers(const io::Json& root, const std::string& pointer);
 
 class Stages;
 

@@ -17,13 +17,6 @@ struct Intervals {
 /// io::PlacedError.
 Intervals read_intervals(ObjectReader& o, double h, double end);
 
-struct Environment;
-
-/// The text of a case with the changes of an environment: old names, settings, seeds and intervals that are
-/// kept. Throws io::PlacedError.
-io::JsonSource changed_source(const std::string& text, const std::string& file,
-                              const Environment& environment);
-
 /// A key of earlier versions without effect
 inline constexpr const char* key_without_effect = "checkpoint_interval";
 

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/case/entry_keys.hpp"
+
+#include "granular/case/case_file.hpp"
+#include "granular/case/pair_keys.hpp"
+
+#include <algorithm>
+
+namespace hilda::granular {
+
+int EntryKeys::material(ObjectReader& o) const
+{
+    const std::string name =
+        o.text("material", materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
+    return material_named(name, materials, [&](const std::string& what) { o.fail("material", what); });
+}
+
+int EntryKeys::group(ObjectReader& o)
+{
+    if (!o.has("group")) return Groups::none;
+    const std::string name = o.name("group");
+    if (name.find_first_of(",\"") != std::string::npos)
+        o.fail("group", "group must not contain commas and quotes, because it is in tables, got " +
+                            io::described(name));
+    return groups.number(name);
+}
+
+std::uint16_t EntryKeys::replica(ObjectReader& o) const
+{
+    constexpr long most = 0xffff;
+    const long number = o.count("replica", 0);
+    if (number > most) o.fail("replica", "replica must be at most 65535, got " + std::to_string(number));
+    if (number > 0 && !free.empty())
+        o.fail("replica", "replica must be 0 if a boundary has a mass, as " + free + " has, got " +
+                              std::to_string(number));
+    return static_cast<std::uint16_t>(number);
+}
+
+int EntryKeys::attached_to(ObjectReader& o, const Case& c)
+{
+    if (!o.has("attached_to")) return -1;
+    const std::string name = o.one_of("attached_to", c.boundaries);
+    const auto at = std::find(c.boundaries.begin(), c.boundaries.end(), name);
+    const int number = static_cast<int>(at - c.boundaries.begin());
+    if (c.world->all_boundaries()[static_cast<std::size_t>(number)].mass > 0)
+        o.fail("attached_to", "attached_to must name a boundary without a mass, got " + io::described(name));
+    for (const char* key : {"v", "omega", "random_v"})
+        if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with attached_to");
+    return number;
+}
+
+}  // namespace hilda::granular

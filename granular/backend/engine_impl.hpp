@@ -3,6 +3,9 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
+#include "granular/backend/pair_lists.hpp"
+#include "granular/backend/transfer.hpp"
+#include "granular/backend/watch_arrays.hpp"
 #include "granular/core/surfaces/hand_over.hpp"
 #include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"
@@ -10,9 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <span>
 #include <type_traits>
-#include <utility>
 
 #include <omp.h>
 
@@ -28,30 +29,6 @@ struct HasFreeBoundary {
     {
         return (j[n] & PairView::boundary_bit) != 0 &&
                surfaces.boundary[surfaces.boundary_of(j[n] & ~PairView::boundary_bit)].mass > 0;
-    }
-};
-
-/// Counts the pairs of a block that fulfil a condition, and writes their numbers in their order.
-template <class Condition>
-struct ListPairs {
-    static constexpr std::uint32_t block = 64;
-
-    Condition is_listed;
-    std::uint32_t pairs;
-    std::uint32_t* count;         ///< of the pairs of each block
-    const std::uint32_t* before;  ///< number of listed pairs before each block
-    std::uint32_t* list;          ///< nullptr: the pairs are only counted
-
-    HILDA_HD void operator()(std::uint32_t number) const
-    {
-        const std::uint32_t begin = number * block, end = pairs - begin < block ? pairs : begin + block;
-        std::uint32_t listed = 0;
-        for (std::uint32_t n = begin; n < end; ++n) {
-            if (!is_listed(n)) continue;
-            if (list != nullptr) list[before[number] + listed] = n;
-            ++listed;
-        }
-        if (list == nullptr) count[number] = listed;
     }
 };
 
@@ -84,12 +61,6 @@ struct ComputeBoundaryLoad {
     }
 };
 
-/// 1 for a fixed particle, for par::largest
-struct IsFixed {
-    const Float4* omega;
-    HILDA_HD float operator()(std::uint32_t k) const { return omega[k].w > 0 ? 0 : 1; }
-};
-
 /// Displacement of a particle since the last neighbour search [units]
 struct DisplacementSinceBuild {
     const Position *now, *at_build;
@@ -114,7 +85,7 @@ public:
         if constexpr (is_cpu) {
             return own;
         } else {
-            if (!host_is_current) copy(host, own);
+            if (!host_is_current) detail::copy(on, host, own);
             host_is_current = true;
             return host;
         }
@@ -124,7 +95,7 @@ public:
         if constexpr (is_cpu)
             triangle_contacts.wake();
         else
-            copy(own, host);
+            detail::copy(on, own, host);
     }
 
     void set_laws(const std::vector<PairLaw>& all, const std::vector<std::uint8_t>& law_of_pair,
@@ -233,11 +204,11 @@ public:
                                                      : SweepPlan::Ahead::none;
             if (!plan.is_for(omp_get_max_threads(), ahead)) {
                 plan.make(own.particle, own.pairs, omp_get_max_threads(), ahead);
-                resize_overlaps();
+                if (watched) resize_overlaps();
             }
         }
         PairView pairs = pair_view();
-        if (watched) pairs.largest_overlap = overlaps.data();
+        if (watched) pairs.largest_overlap = watch.overlaps();
         const ParticleView particles = particle_view(domain, own.particle);
         if constexpr (is_cpu) {
             // Those with triangles are the last ones of the list.
@@ -314,40 +285,13 @@ public:
         if (watched && own.pairs.start.size() > 0) prepare_watch();
     }
 
-    float take_largest_overlap() override
-    {
-        float largest = std::exchange(earlier_overlap, 0.f);
-        for (const float overlap : to_host(overlaps, host_overlaps)) largest = larger(largest, overlap);
-        par::fill(on, overlaps.data(), overlaps.size(), 0.f);
-        return largest;
-    }
+    float take_largest_overlap() override { return watch.take_largest_overlap(on); }
 
     ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
                                const std::vector<BoundaryVelocity>& after) override
     {
-        if (external_blocks.size() == 0) return {};
-        const bool moves = !before.empty();
-        if (moves) send(velocities_before, before), send(velocities_after, after);
-        const ParticleView particles = particle_view(domain, own.particle);
-        const PairView pairs = pair_view();
-        const std::uint32_t blocks = watch_blocks(boundary_pairs);
-        if (boundary_pairs > 0)
-            par::for_each(on, blocks,
-                          AddBoundaryLoads{.particles = particles,
-                                           .pairs = pairs,
-                                           .surfaces = surfaces(),
-                                           .before = moves ? velocities_before.data() : nullptr,
-                                           .after = moves ? velocities_after.data() : nullptr,
-                                           .which = with_boundary.data(),
-                                           .count = boundary_pairs,
-                                           .out = external_blocks.data()},
-                          serial_blocks);
-        if (fixed_pairs > 0)
-            par::for_each(on, watch_blocks(fixed_pairs),
-                          AddFixedLoads{particles, pairs, with_fixed.data(), fixed_pairs,
-                                        external_blocks.data() + blocks},
-                          serial_blocks);
-        return total(external_blocks, host_external_blocks);
+        return watch.external_sums(on, particle_view(domain, own.particle), pair_view(), surfaces(), before,
+                                   after);
     }
 
     ParticleSums particle_sums(const Domain& domain, bool only_forces) override
@@ -355,39 +299,20 @@ public:
         const Particles<Backend>& p = own.particle;
         if (!only_forces)
             par::copy_bytes(on, neighbours.position_copy(), p.position.data(), p.count * sizeof(Position));
-        par::for_each(on, particle_blocks.size(),
-                      AddParticles{.particles = particle_view(domain, p),
-                                   .copy = only_forces ? nullptr : velocities_copy.data(),
-                                   .force = force.size() > 0 ? force.data() : nullptr,
-                                   .id = p.id.data(),
-                                   .count = p.count,
-                                   .out = particle_blocks.data(),
-                                   .clumps = clump_view()},
-                      serial_blocks);
-        return total(particle_blocks, host_particle_blocks);
+        return watch.particle_sums(on, particle_view(domain, p), p, force.size() > 0 ? force.data() : nullptr,
+                                   clump_view(), only_forces);
     }
 
     ContactSums contact_sums(const Domain& domain, float h) override
     {
         ParticleView particles = particle_view(domain, own.particle);
         particles.position = neighbours.position_copy();
-        add_contacts(on, particles, pair_view(), law_view(h), contact_blocks.data());
-        return total(contact_blocks, host_contact_blocks);
+        return watch.contact_sums(on, particles, pair_view(), law_view(h));
     }
 
     KineticSums kinetic_sums(double s) override
     {
-        const Particles<Backend>& p = own.particle;
-        par::for_each(on, kinetic_blocks.size(),
-                      AddKinetic{.velocity = p.velocity.data(),
-                                 .omega = p.omega.data(),
-                                 .before = velocities_copy.data(),
-                                 .s = s,
-                                 .count = p.count,
-                                 .out = kinetic_blocks.data(),
-                                 .clumps = clump_view()},
-                      serial_blocks);
-        return total(kinetic_blocks, host_kinetic_blocks);
+        return watch.kinetic_sums(on, own.particle, clump_view(), s);
     }
 
     void wait() override { par::wait(on); }
@@ -409,7 +334,7 @@ public:
     std::size_t bytes() const override
     {
         return own.particle.bytes() + own.pairs.bytes() + force.bytes() + neighbours.bytes() +
-               with_free_boundary.bytes() + listed_counts.bytes() + boundary_loads.bytes() + watch_bytes() +
+               with_free_boundary.bytes() + lister.bytes() + boundary_loads.bytes() + watch.bytes() +
                attached.bytes() + attached_index.bytes() + poses.bytes() + plan.bytes() + blocks.bytes() +
                resting.bytes() + moving.bytes() + triangle.bytes() + vertex.bytes() + vertex_normal.bytes() +
                fan_start.bytes() + fan.bytes() + with_triangle.bytes() + triangle_contacts.bytes() +
@@ -510,111 +435,30 @@ private:
                                    static_cast<std::uint32_t>(attached.size()), attached_index.data()});
     }
 
-    /// Writes the numbers of the pairs that fulfil a condition to `list`, in their order. Returns how many
-    /// there are. Called after a neighbour search.
+    /// See PairLister; after a neighbour search
     template <class Condition>
     std::uint32_t list_pairs(const Condition& condition, par::Array<Backend, std::uint32_t>& list)
     {
-        using List = detail::ListPairs<Condition>;
-        const std::uint32_t n = own.pairs.count, blocks = (n + List::block - 1) / List::block;
-        listed_counts.resize(2 * std::size_t{blocks} + 1);
-        std::uint32_t *const count = listed_counts.data(), *const before = count + blocks;
-        par::for_each(on, blocks, List{condition, n, count, before, nullptr});
-        const auto listed = static_cast<std::uint32_t>(par::exclusive_scan(on, count, before, blocks));
-        list.resize(listed);
-        if (listed > 0) par::for_each(on, blocks, List{condition, n, count, before, list.data()});
-        return listed;
+        return lister.list_pairs(on, condition, own.pairs.count, list);
     }
-
-    /// Lists the pairs with external loads and provides the memory of the sums.
-    void prepare_watch()
-    {
-        const std::uint32_t n = own.particle.count, pairs = own.pairs.count;
-        const Float4* const omega = own.particle.omega.data();
-        boundary_pairs = fixed_pairs = 0;
-        if (boundaries.size() > 0)
-            boundary_pairs = list_pairs(HasBoundary{own.pairs.j.data()}, with_boundary);
-        if (par::largest(on, n, detail::IsFixed{omega}) > 0)
-            fixed_pairs =
-                list_pairs(HasFixedParticle{own.pairs.i.data(), own.pairs.j.data(), omega}, with_fixed);
-        velocities_copy.resize(n);
-        particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
-        contact_blocks.resize(watch_blocks(pairs));
-        external_blocks.resize(watch_blocks(boundary_pairs) + watch_blocks(fixed_pairs));
-        resize_overlaps();
-    }
-
-    /// One number for each task of a loop that compares overlaps
-    void resize_overlaps()
-    {
-        if (!watched) return;
-        const auto tasks = [](std::size_t n, std::size_t of_task) { return (n + of_task - 1) / of_task; };
-        earlier_overlap = take_largest_overlap();
-        overlaps.resize(is_cpu ? std::max(tasks(own.particle.count, SweepPlan::block),
-                                          tasks(plan.list.size(), list_chunk))
-                               : 1);
-        par::fill(on, overlaps.data(), overlaps.size(), 0.f);
-    }
-
-    std::size_t watch_bytes() const
-    {
-        return with_boundary.bytes() + with_fixed.bytes() + velocities_copy.bytes() +
-               particle_blocks.bytes() + kinetic_blocks.bytes() + contact_blocks.bytes() +
-               external_blocks.bytes() + overlaps.bytes() + velocities_before.bytes() +
-               velocities_after.bytes();
-    }
-
-    /// The elements of an array in the memory of the host
-    template <class T>
-    std::span<const T> to_host(const par::Array<Backend, T>& from, std::vector<T>& copy)
-    {
-        if constexpr (is_cpu) return {from.data(), from.size()};
-        copy.resize(from.size());
-        par::copy_to_host(on, copy.data(), from.data(), from.size() * sizeof(T));
-        return copy;
-    }
-    template <class Sum>
-    Sum total(const par::Array<Backend, Sum>& blocks, std::vector<Sum>& copy)
-    {
-        Sum sum;
-        for (const Sum& block : to_host(blocks, copy)) sum += block;
-        return sum;
-    }
-
     template <class T>
     void send(par::Array<Backend, T>& to, const std::vector<T>& from)
     {
-        to.resize(from.size());
-        par::copy_to_device(on, to.data(), from.data(), from.size() * sizeof(T));
+        detail::send(on, to, from);
     }
 
-    /// Copies all arrays between the host and the device.
-    template <class To, class From>
-    void copy(Arrays<To>& to, Arrays<From>& from)
+    void prepare_watch()
     {
-        const auto one = [&](auto& a, auto& b) {
-            using T = std::remove_reference_t<decltype(*b.data())>;
-            a.resize(b.size());
-            if constexpr (std::is_same_v<To, par::Cpu>)
-                par::copy_to_host(on, a.data(), b.data(), b.size() * sizeof(T));
-            else
-                par::copy_to_device(on, a.data(), b.data(), b.size() * sizeof(T));
-        };
-        auto& p = to.particle;
-        auto& q = to.pairs;
-        auto& pf = from.particle;
-        auto& qf = from.pairs;
-        one(p.position, pf.position), one(p.velocity, pf.velocity), one(p.omega, pf.omega);
-        one(p.compensation, pf.compensation), one(p.species, pf.species), one(p.id, pf.id),
-            one(p.acc, pf.acc), one(p.alpha, pf.alpha);
-        one(p.orientation, pf.orientation), one(p.orientation_compensation, pf.orientation_compensation);
-        one(p.position_at_build, pf.position_at_build);
-        // The host does not use the loads.
-        one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.law, qf.law);
-        one(q.in_contact, qf.in_contact), one(q.history, qf.history);
-        one(q.rotation_history, qf.rotation_history), one(q.internal, qf.internal);
-        p.count = pf.count, q.count = qf.count;
-        one(to.clump, from.clump);
+        watch.prepare(on, own, boundaries.size() > 0, lister);
+        resize_overlaps();
+    }
+    /// One number for each task of a loop that compares overlaps
+    void resize_overlaps()
+    {
+        const auto tasks = [](std::size_t n, std::size_t of_task) { return (n + of_task - 1) / of_task; };
+        watch.resize_overlaps(on, is_cpu ? std::max(tasks(own.particle.count, SweepPlan::block),
+                                                    tasks(plan.list.size(), list_chunk))
+                                         : 1);
     }
 
     const Backend on = {};
@@ -666,30 +510,12 @@ private:
     std::uint32_t materials = 1, free_pairs = 0, triangle_pairs = 0;
     bool one_law = true, rotation_laws = false, internal = false, any_free = false;
     par::Array<Backend, std::uint32_t> with_free_boundary, with_triangle;  ///< numbers of these pairs
-    par::Array<Backend, std::uint32_t> listed_counts;                      ///< memory of list_pairs()
+    detail::PairLister<Backend> lister;
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
     std::vector<Wrench> wrenches;
-
-    // the watch
-    static constexpr std::size_t serial_blocks = 16;
     bool watched = false;
-    std::uint32_t boundary_pairs = 0, fixed_pairs = 0;
-    par::Array<Backend, std::uint32_t> with_boundary, with_fixed;  ///< numbers of these pairs
-    par::Array<Backend, Velocities> velocities_copy;
-    par::Array<Backend, BoundaryVelocity> velocities_before, velocities_after;
-    par::Array<Backend, float> overlaps;
-    /// Largest overlap since the last call of take_largest_overlap() and before the last neighbour search
-    float earlier_overlap = 0;
-    par::Array<Backend, ParticleSums> particle_blocks;
-    par::Array<Backend, KineticSums> kinetic_blocks;
-    par::Array<Backend, ContactSums> contact_blocks;
-    par::Array<Backend, ExternalSums> external_blocks;
-    std::vector<ParticleSums> host_particle_blocks;
-    std::vector<KineticSums> host_kinetic_blocks;
-    std::vector<ContactSums> host_contact_blocks;
-    std::vector<ExternalSums> host_external_blocks;
-    std::vector<float> host_overlaps;
+    WatchArrays<Backend> watch;
 };
 
 }  // namespace hilda::granular

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests of the layout of the source tree: allowed includes between the rooms and between the folders of
-// granular, the folders of each room, the number of units in a folder, the width of comments, no catch-all folders, and the entries of the top level.
+// granular, the folders of each room, the number of units in a folder, the width of comments, no catch-all
+// folders, and the entries of the top level.
 #include "tests/support/paths.hpp"
 
 #include <algorithm>

@@ -171,7 +171,7 @@ private:
         Material m = read_material(o);
         for (const Material& other : keys.materials)
             if (other.name == m.name)
-                o.fail("name", "two keys.materials have the same name, got " + io::described(m.name));
+                o.fail("name", "two materials have the same name, got " + io::described(m.name));
         keys.materials.push_back(std::move(m));
     }
 
@@ -179,7 +179,7 @@ private:
     {
         const auto [i, j] = read_between(o, keys.materials);
         if (const auto [first, is_new] = law_places.emplace(std::minmax(i, j), o.place()); !is_new)
-            o.fail("between", "two laws have the same keys.materials, got " +
+            o.fail("between", "two laws have the same materials, got " +
                                   io::described(keys.materials[i].name) + " and " +
                                   io::described(keys.materials[j].name) + "; first at " + first->second);
         const PairLaw pair = read_pair(o, keys.materials[i], keys.materials[j], out.notices);

@@ -6,8 +6,10 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 
 # Polydisperse particles in a shaken cup under a free lid, with all laws that have a history.
 CASE = {
@@ -56,6 +58,35 @@ class Runs:
         if process.returncode != code:
             sys.exit(f"{' '.join(process.args)}: ended with {process.returncode}, not {code}: {err}")
         return err
+
+    def interrupt(self, name, output, checkpoints, which, *arguments):
+        """Starts a run and sends it the signal after it has written this number of checkpoints.
+
+        Returns whether the run was interrupted. A run that is complete before must end with 0. The number of checkpoints, and
+        not a time, decides: the runs are interrupted on fast and slow machines.
+        """
+        file = self.folder / output / "checkpoint"
+
+        def written():
+            try:
+                status = file.stat()
+                return status.st_ino, status.st_mtime_ns
+            except FileNotFoundError:
+                return None
+
+        process = self.start(name, "--output", output, *arguments)
+        last = written()
+        while process.poll() is None and checkpoints > 0:
+            time.sleep(5e-4)
+            now = written()
+            checkpoints -= now not in (None, last)
+            last = now
+        if checkpoints == 0:
+            process.send_signal(which)
+        _, err = process.communicate()
+        was_interrupted = process.returncode == (130 if which == signal.SIGINT else -which)
+        expect(was_interrupted or process.returncode == 0, f"{output}: ended with {process.returncode}: {err}")
+        return was_interrupted
 
     def sha(self, output):
         """SHA-256 of all output that does not depend on wall time"""

@@ -7,7 +7,6 @@
 import csv
 import json
 import signal
-import subprocess
 import sys
 import tempfile
 
@@ -73,16 +72,8 @@ def one_result(runs):
         runs.finish(case, "--output", output)
         options = CHANGES
         parts = 0
-        while True:
-            process = runs.start(case, "--output", output, "--resume", *options, "--checkpoint", "0.02", "--threads", str(1 + parts % 2))
-            try:
-                process.communicate(timeout=0.25 + 0.1 * parts)
-                expect(process.returncode == 0, f"{output}: ended with {process.returncode}")
-                break
-            except subprocess.TimeoutExpired:
-                process.send_signal(which)
-                process.communicate()
-                parts += 1
+        while runs.interrupt(case, output, 1 + parts, which, "--resume", *options, "--checkpoint", "0.01", "--threads", str(1 + parts % 2)):
+            parts += 1
             has_changed = "gravity" in json.loads((runs.folder / output / "case.json").read_text())
             options = () if has_changed else CHANGES
         expect(parts > 0, f"{output}: {parts} interruptions")

@@ -219,19 +219,10 @@ def longer(runs):
     # an extension that is killed or stopped, and an interrupted run with another end
     sha, _ = whole(case, "0.08")
     runs.finish(case, "--end", "0.01", "--output", "out")
-    draw = random.Random(3)
     kills = 0
-    while True:
-        process = runs.start(case, "--end", "0.08", "--output", "out", "--resume", "--checkpoint", "0.01")
-        try:
-            process.communicate(timeout=draw.uniform(0, 0.3) * (1 + kills / 10))  # longer on a busy machine
-            expect(process.returncode == 0, "the extension ends with 0")
-            break
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.communicate()
-            kills += 1
-            expect(kills < 200, "the extension comes to its end")
+    while runs.interrupt(case, "out", 1 + kills, signal.SIGKILL, "--end", "0.08", "--resume", "--checkpoint", "0.01"):
+        kills += 1
+        expect(kills < 200, "the extension comes to its end")
     expect(kills > 0, "the extension is killed at least once")
     expect(runs.sha("out") == sha, f"an extension that was killed {kills} times gives the same files")
     runs.remove("out")
@@ -294,20 +285,11 @@ def bodies(runs):
     for count in (2, 3, 8):
         runs.finish(case, "--output", "out", "--force", "--threads", str(count))
         expect(runs.sha("out") == whole, f"{count} threads give the same files")
-    draw = random.Random(5)
     kills = 0
     runs.remove("out")
-    while True:
-        process = runs.start(case, "--output", "out", "--checkpoint", "0.02", "--resume")
-        try:
-            process.communicate(timeout=draw.uniform(0, 0.3) * (1 + kills / 10))  # longer on a busy machine
-            expect(process.returncode == 0, "the run ends with 0")
-            break
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.communicate()
-            kills += 1
-            expect(kills < 200, "the run comes to its end")
+    while runs.interrupt(case, "out", 1 + kills, signal.SIGKILL, "--resume", "--checkpoint", "0.02"):
+        kills += 1
+        expect(kills < 200, "the run comes to its end")
     expect(kills > 0 and runs.sha("out") == whole, f"a run that was killed {kills} times gives the same files")
     print(f"1, 2, 3, 8 threads and {kills} kills; {whole}")
 

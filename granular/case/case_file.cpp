@@ -88,13 +88,14 @@ public:
         o.finish();
         boundaries.check_sizes(largest_diameter());
         check_widths();
-        double inserted = 0;
-        if (out.insertions != nullptr)
-            for (const Insertion& i : out.insertions->all) inserted += i.what().largest_count(out.end);
         Environment available = environment;
         available.lists_contacts = environment.lists_contacts || out.outputs.lists_contacts();
         if (environment.with_particles) {
-            const CaseSize size{static_cast<double>(out.world->count()), inserted, largest, rotation_laws};
+            const CaseSize size{.particles = static_cast<double>(out.world->count()),
+                                .insertions = out.insertions.get(),
+                                .end = out.end,
+                                .diameter = largest,
+                                .rotation_laws = rotation_laws};
             check_memory(out.source, size, world, fills.specs(), out.outputs, available);
             fills.add_to(out, keys);
             boundaries.check_sides();
@@ -218,13 +219,15 @@ private:
         if (out.insertions == nullptr) out.insertions = std::make_shared<Insertions>();
         std::vector<Insertion>& all = out.insertions->all;
         InsertionSpec spec =
-            read_insertion(o, "insertion " + std::to_string(all.size()), out.h, world.gravity);
+            read_insertion(o, "insertion " + std::to_string(all.size()), out.h, world.gravity, *out.world);
         for (const Insertion& other : all)
             if (other.what().name == spec.name)
                 o.fail("name", "two insertions have the same name, got " + io::described(spec.name));
         spec.group = keys.group(o);
-        spec.material = keys.material(o);
-        spec.density = keys.materials[static_cast<std::size_t>(spec.material)].density;
+        if (!spec.clumps) {
+            spec.material = keys.material(o);
+            spec.density = keys.materials[static_cast<std::size_t>(spec.material)].density;
+        }
         spec.replica = keys.replica(o);
         const auto [low, high] = spec.region.bounds(spec.sizes.largest());
         const Vec3 from = world.low, to = world.high;
@@ -236,7 +239,11 @@ private:
                                      spec.region.description());
         o.finish();
         largest = std::max(largest, 2 * spec.sizes.largest());
-        o.located([&] { World(world, keys.materials).expect(spec.samples(), 0); });  // may refuse them
+        o.located([&] {  // may refuse them
+            World other(world, keys.materials);
+            for (const ClumpTemplate& t : out.world->clump_templates()) other.add_template(t);
+            spec.announce(other, 0);
+        });
         all.emplace_back(spec);
     }
 

@@ -15,24 +15,34 @@ void check_memory(const io::JsonSource& source, const CaseSize& size, const Worl
                   const Environment& available)
 {
     double particles = size.particles, largest = size.diameter;
-    const double inserted = size.inserted;
     constexpr double gigabyte = 1e9, of_output = 8, of_contacts = 2 * 2.3 * sizeof(ContactRecord),
                      of_cell = 4;
     double of_fields = 0;  // cells
     for (const FieldSpec& f : outputs.fields) of_fields += static_cast<double>(f.grid.count());
     std::uint16_t replicas = 0;
     double of_clumps = 0;  // bytes: tables by particle and load of each particle, and the bodies
-    for (const FillSpec& f : fills) {
-        particles += estimated_count(f);
+    const auto add_clumps = [&](double many, const PlacedClumps& clumps) {
         constexpr double of_particle = 2 * sizeof(std::uint32_t) + sizeof(Load),
                          of_body = sizeof(ClumpBody) + sizeof(Clump);
-        if (f.clumps) of_clumps += estimated_count(f) * (of_particle + of_body / f.clumps.spheres);
+        if (clumps) of_clumps += many * (of_particle + of_body / clumps.spheres());
+    };
+    for (const FillSpec& f : fills) {
+        particles += estimated_count(f);
+        add_clumps(estimated_count(f), f.clumps);
         largest = std::max(largest, 2 * f.radius);
         replicas = std::max(replicas, f.replica);
     }
     // An inserted particle is in the arrays, and in a copy while others are inserted.
     constexpr double of_copy = 2 * sizeof(Particle);
     const double own = particles;
+    double inserted = 0;
+    if (size.insertions != nullptr)
+        for (const Insertion& i : size.insertions->all) {
+            const InsertionSpec& s = i.what();
+            const double many = s.largest_count(size.end) * (s.clumps ? s.clumps.spheres() : 1);
+            add_clumps(many, s.clumps);
+            inserted += many;
+        }
     particles += inserted;
     const Vec3 edges = o.high - o.low;
     const double edge = largest * (1 + o.skin),

@@ -10,10 +10,11 @@ namespace hilda::granular {
 
 /// What the memory of a case depends on, besides its options, fills and outputs
 struct CaseSize {
-    double particles = 0;        ///< that are in the world already
-    double inserted = 0;         ///< largest number of inserted particles
-    double diameter = 0;         ///< largest one of the particles that are not in fills [m]
-    bool rotation_laws = false;  ///< whether a law has rolling or spin
+    double particles = 0;                    ///< that are in the world already
+    const Insertions* insertions = nullptr;  ///< or nullptr
+    double end = 0;                          ///< of the run [s]
+    double diameter = 0;                     ///< largest one of the particles that are not in fills [m]
+    bool rotation_laws = false;              ///< whether a law has rolling or spin
 };
 
 /// Compares an estimate of the required memory with the available memory. Throws io::PlacedError.

@@ -16,6 +16,15 @@ double ClumpTemplate::bounding_radius() const
     return radius;
 }
 
+std::vector<Sphere> ClumpTemplate::placed(const Vec3& r, const std::array<double, 4>& e, double scale) const
+{
+    const EulerParameters<double> p{e[0], {e[1], e[2], e[3]}};
+    std::vector<Sphere> all;
+    all.reserve(spheres.size());
+    for (const Sphere& s : spheres) all.push_back({r + rotated(p, scale * (s.r - centre)), scale * s.radius});
+    return all;
+}
+
 void check_spheres(const std::vector<Sphere>& spheres, const std::string& where)
 {
     if (spheres.empty()) io::reject(where, "must have at least one sphere", 0);

@@ -6,6 +6,7 @@
 #include "granular/clumps/sphere_union.hpp"
 #include "granular/core/clump.hpp"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct ClumpTemplate {
 
     /// Radius of the sphere around the centre of mass that contains all spheres [m]
     double bounding_radius() const;
+    /// The spheres of a clump with the centre of mass r [m], the Euler parameters e of the rotation from the
+    /// frame of the template, and all lengths multiplied by the scale
+    std::vector<Sphere> placed(const Vec3& r, const std::array<double, 4>& e, double scale) const;
     /// Throws io::InvalidInput "clump 'NAME': ..." if there is no sphere or too many, for a sphere or mass
     /// properties that are not finite or not positive, and for an inertia that no body has.
     void check() const;

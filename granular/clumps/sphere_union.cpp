@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/clumps/sphere_union.hpp"
 
+#include "granular/core/material.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -168,7 +170,7 @@ Moments without_overlaps(const std::vector<Sphere>& spheres)
 {
     Moments m;
     for (const auto& [r, R] : spheres) {
-        const double V = 4.0 / 3 * pi * R * R * R, own = 0.2 * R * R;  // ∫ (x - x_c)² dV/V
+        const double V = sphere_volume(R), own = 0.2 * R * R;  // ∫ (x - x_c)² dV/V
         m.volume += V, m.first += V * r;
         m.xx += V * (r.x * r.x + own), m.yy += V * (r.y * r.y + own), m.zz += V * (r.z * r.z + own);
         m.xy += V * r.x * r.y, m.yz += V * r.y * r.z, m.zx += V * r.z * r.x;

@@ -19,11 +19,11 @@ struct Material {
     double E = 0, nu = 0;  ///< Young's modulus [Pa], Poisson's ratio [-]
 };
 
+/// Volume of a sphere [m³]
+inline double sphere_volume(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius * radius; }
+
 /// Mass of a sphere [kg]
-inline double sphere_mass(double radius, double density)
-{
-    return 4.0 / 3 * std::numbers::pi * radius * radius * radius * density;
-}
+inline double sphere_mass(double radius, double density) { return sphere_volume(radius) * density; }
 
 /// Rayleigh time of a sphere, π R √(ρ/G)/(0.1631 ν + 0.8766), G = E/(2 (1 + ν)) [s]
 inline double rayleigh_time(double radius, const Material& m)

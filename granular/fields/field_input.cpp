@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/fields/field_input.hpp"
 
-#include <numbers>
-
 namespace hilda::granular {
 
 FieldInput field_input(const World& world, const std::vector<ContactRecord>& contacts, int replica,
@@ -15,8 +13,7 @@ FieldInput field_input(const World& world, const std::vector<ContactRecord>& con
     const std::vector<Particle> all = world.particles();
     for (const Particle& p : all)
         if (p.replica == replica && counts(p) && p.clump < 0)
-            in.particles.push_back(
-                {p.r, p.v, p.mass, 4. / 3 * std::numbers::pi * p.radius * p.radius * p.radius});
+            in.particles.push_back({p.r, p.v, p.mass, sphere_volume(p.radius)});
     for (const Clump& c : world.clumps())
         if (c.replica == replica && (groups == nullptr || groups->of(c.id) == group))
             in.particles.push_back({c.r, c.v, c.mass,

@@ -79,6 +79,14 @@ std::vector<Particle> InsertionSpec::samples() const
     return all;
 }
 
+void InsertionSpec::announce(World& world, std::size_t number) const
+{
+    if (!clumps) return world.expect(samples(), number);
+    std::vector<double> scales;
+    for (const Particle& p : samples()) scales.push_back(p.radius / clumps.radius);
+    world.expect_clumps(clumps.shape, scales, replica, number);
+}
+
 Insertion::Insertion(const InsertionSpec& of) : spec(of), flow(of.flow) { state.random = spec.seed; }
 
 void Insertion::begin_flow(const InsertionFlow& of, double t)
@@ -124,16 +132,26 @@ std::optional<std::uint32_t> Insertion::before_step(World& world)
     };
     draw();
     std::vector<Particle> placed;
+    std::vector<Clump> clumps;     // in place of the particles
+    std::vector<Sphere> occupied;  // by a particle or a clump
     if (is_due(now, t)) {
         const double R = spec.sizes.largest();
         const auto [low, high] = spec.region.bounds(R);
         Obstacles obstacles(world, low, high, R, spec.replica);
         for (bool has_place = true; has_place && is_due(now, t); draw()) {
             Particle p = spec.particle(now.radius);
+            Clump clump;
             has_place = false;
             for (long k = 0; k < InsertionSpec::tries_at_once && !has_place; ++k) {
                 p.r = spec.region.centre(p.radius, random);
-                has_place = !obstacles.touches(p.r, p.radius);
+                if (spec.clumps) {
+                    clump = spec.clumps.at(p, random);
+                    occupied = spec.clumps.of.placed(clump.r, clump.e, clump.scale);
+                } else {
+                    occupied.assign(1, {p.r, p.radius});
+                }
+                has_place = std::none_of(occupied.begin(), occupied.end(),
+                                         [&](const Sphere& s) { return obstacles.touches(s.r, s.radius); });
                 if (!has_place && now.tries++ == 0) now.blocked_since = t;
             }
             if (!has_place) {
@@ -141,16 +159,17 @@ std::optional<std::uint32_t> Insertion::before_step(World& world)
                 break;
             }
             p.v = flow.v + flow.random_v * random.direction();
-            obstacles.add(p.r, p.radius);
-            placed.push_back(p);
+            clump.v = p.v;
+            for (const Sphere& s : occupied) obstacles.add(s.r, s.radius);
+            placed.push_back(p), clumps.push_back(clump);
             now.mass += stored_mass(p.radius, spec.density);
             ++now.count, now.radius = 0, now.tries = 0;
         }
     }
     now.random = random.state;
     std::optional<std::uint32_t> first;
-    for (const Particle& p : placed) {
-        const std::uint32_t id = world.add(p);
+    for (std::size_t k = 0; k < placed.size(); ++k) {
+        const std::uint32_t id = spec.clumps ? world.add_clump(clumps[k]) : world.add(placed[k]);
         if (!first) first = id;
     }
     state = now;
@@ -189,7 +208,7 @@ double Insertions::mass() const
 void Insertions::start(World& world, double t)
 {
     for (const Insertion& i : all)
-        world.expect(i.what().samples(), static_cast<std::size_t>(std::min(i.what().largest_count(t), 4e9)));
+        i.what().announce(world, static_cast<std::size_t>(std::min(i.what().largest_count(t), 4e9)));
     world.before_each_step([this](World& w) {
         for (Insertion& i : all)
             if (const std::optional<std::uint32_t> first = i.before_step(w); first && groups != nullptr)

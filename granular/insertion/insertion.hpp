@@ -5,6 +5,7 @@
 
 #include "granular/insertion/region.hpp"
 #include "granular/insertion/sizes.hpp"
+#include "granular/reading/clump_keys.hpp"
 #include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
 
@@ -50,7 +51,9 @@ struct InsertionSpec {
     double from = 0;                    ///< [s]
     long first_step = 0, interval = 1;  ///< of the insertions [steps]
     int material = 0;
-    double density = 0;  ///< [kg/m³]
+    double density = 0;  ///< of a particle; of clumps their mass over the volume of the sphere [kg/m³]
+    PlacedClumps clumps =
+        {};  ///< in place of the particles, whose sizes are those of the spheres around them
     std::uint16_t replica = 0;
     bool postpones = true;     ///< a particle that finds no place waits for the next insertion
     long most_tries = 100000;  ///< positions in turn without place, after which the run ends
@@ -66,15 +69,18 @@ struct InsertionSpec {
     double largest_count(double t) const;
     /// A particle with a radius, without a place
     Particle particle(double radius) const;
-    /// Particles that represent the distribution of the sizes
+    /// Particles that represent the distribution of the sizes; for clumps the spheres around them
     std::vector<Particle> samples() const;
+    /// Announces this number of particles or clumps to a world. Throws io::InvalidInput.
+    void announce(World& world, std::size_t number) const;
 };
 
 /// An insertion and its state.
 ///
 /// Particles are inserted before the steps first_step, first_step + interval, ...: those that are due at this
 /// time and were not inserted yet. The centres are random places in the region where the particle touches
-/// nothing. The random numbers depend on the seed and the earlier insertions only.
+/// nothing. A clump touches with its spheres. The random numbers depend on the seed and the earlier
+/// insertions only.
 class Insertion {
 public:
     explicit Insertion(const InsertionSpec& spec);
@@ -84,7 +90,7 @@ public:
     std::optional<std::uint32_t> before_step(World& world);
 
     const InsertionSpec& what() const { return spec; }
-    std::int64_t count() const { return state.count; }  ///< of all inserted particles
+    std::int64_t count() const { return state.count; }  ///< of all inserted particles; a clump counts as one
     double mass() const { return state.mass; }          ///< of all inserted particles [kg]
     void transfer(io::Archive& a);
 
@@ -126,7 +132,8 @@ struct Insertions {
 };
 
 /// Reads an entry of `insert`, without material and replica, of a case with a step h and gravity [s, m/s²].
-/// Throws io::InvalidInput.
-InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h, const Vec3& gravity);
+/// `world`: with the templates of clumps. Throws io::InvalidInput.
+InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h, const Vec3& gravity,
+                             const World& world);
 
 }  // namespace hilda::granular

@@ -34,11 +34,17 @@ void read_amount(ObjectReader& o, InsertionSpec& s)
 
 }  // namespace
 
-InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h, const Vec3& gravity)
+InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h, const Vec3& gravity,
+                             const World& world)
 {
     InsertionSpec s;
     s.name = o.name("name", name);
-    s.sizes = read_radius(o);
+    s.clumps = read_placed_clumps(o, world);
+    s.sizes = read_radius(o, s.clumps ? std::optional(s.clumps.radius) : std::nullopt);
+    if (s.clumps) {
+        s.material = s.clumps.of.material;
+        s.density = s.clumps.of.mass / sphere_volume(s.clumps.radius);
+    }
     const double R = s.sizes.largest();
     s.region = read_region(o.object("region"), R);
     read_amount(o, s);

@@ -81,22 +81,22 @@ Clump read_single_clump(ObjectReader& o, const World& world, std::uint16_t repli
     return c;
 }
 
-FilledClumps read_filled_clumps(ObjectReader& o, const World& world)
+PlacedClumps read_placed_clumps(ObjectReader& o, const World& world)
 {
-    FilledClumps f;
+    PlacedClumps f;
     if (!o.has("clump")) {
-        if (o.has("orientation")) o.fail("orientation", "orientation is only for a fill with clump");
+        if (o.has("orientation")) o.fail("orientation", "orientation requires the key clump");
         return f;
     }
     refuse_with_clump(o, {"material", "attached_to"});
     f.shape = template_of(o, world);
-    const ClumpTemplate& t = world.clump_templates()[static_cast<std::size_t>(f.shape)];
-    f.radius = t.bounding_radius(), f.spheres = static_cast<std::uint32_t>(t.spheres.size());
+    f.of = world.clump_templates()[static_cast<std::size_t>(f.shape)];
+    f.radius = f.of.bounding_radius();
     if (o.has("orientation")) f.orientation = read_orientation(o);
     return f;
 }
 
-Clump FilledClumps::at(const Particle& place, Random& random) const
+Clump PlacedClumps::at(const Particle& place, Random& random) const
 {
     Clump c{
         .shape = shape, .r = place.r, .v = place.v, .scale = place.radius / radius, .replica = place.replica};

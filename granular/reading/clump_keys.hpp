@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The keys of clumps in a case: templates, single clumps, and clumps of a fill.
+/// The keys of clumps in a case: templates, single clumps, and clumps in the places of particles.
 
 #pragma once
 
@@ -17,21 +17,23 @@ ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, cons
 /// Reads an entry of `particles` with the key clump. Throws io::PlacedError.
 Clump read_single_clump(ObjectReader& o, const World& world, std::uint16_t replica);
 
-/// The clumps of a fill, one for each particle that the fill generates
-class FilledClumps {
+/// The clumps of a fill or an insertion, each in the place of a particle
+class PlacedClumps {
 public:
-    int shape = -1;                                    ///< number of the template; -1: the fill has particles
+    int shape = -1;                                    ///< number of the template; -1: particles, no clumps
+    ClumpTemplate of;                                  ///< the template
     double radius = 0;                                 ///< of the sphere around the template [m]
-    std::uint32_t spheres = 1;                         ///< of each clump
     std::optional<std::array<double, 4>> orientation;  ///< empty: at random
 
     explicit operator bool() const { return shape >= 0; }
-    /// The clump in place of a particle, whose radius is that of the sphere around the clump. The random
-    /// orientations have a sequence of their own, so that places and velocities are those of particles.
+    double spheres() const { return static_cast<double>(of.spheres.size()); }  ///< number of each clump
+    /// The clump in place of a particle, whose radius is that of the sphere around the clump. A random
+    /// orientation takes three random numbers.
     Clump at(const Particle& place, Random& random) const;
 };
 
-/// Reads the keys clump and orientation of an entry of `fill`. Throws io::PlacedError.
-FilledClumps read_filled_clumps(ObjectReader& o, const World& world);
+/// Reads the keys clump and orientation of an entry of `fill` or `insert`.
+/// Throws io::PlacedError.
+PlacedClumps read_placed_clumps(ObjectReader& o, const World& world);
 
 }  // namespace hilda::granular

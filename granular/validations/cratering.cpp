@@ -66,7 +66,7 @@ struct Bed {
         constexpr double packing = 0.6;
         const double spacing = 2.1 * R;
         const int row = static_cast<int>((width - 2 * R) / spacing) + 1;
-        const double pitch = (width - 2 * R) / (row - 1), of_grain = sphere_mass(R, 1);  // volume
+        const double pitch = (width - 2 * R) / (row - 1), of_grain = sphere_volume(R);
         const auto count =
             static_cast<std::size_t>(std::lround(packing * width * width * bed_height / of_grain));
         Random random(1);

@@ -48,7 +48,7 @@ enum MaterialNumber { grain, wall };
 Material glass(const Drum& d) { return {"glass", 2500, d.E, 0.24}; }
 
 /// Volume of a grain [m³]
-double of_grain(const Drum& d) { return sphere_mass(d.R, 1); }
+double of_grain(const Drum& d) { return sphere_volume(d.R); }
 
 PairLaw law(const Drum& d, double e, double friction, double slow)
 {

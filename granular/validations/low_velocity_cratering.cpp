@@ -97,7 +97,7 @@ struct Cylinder {
 std::vector<Vec3> loose_lattice(const BeadCylinder& c)
 {
     const auto count = static_cast<std::size_t>(1.1 * 0.6 * std::numbers::pi * c.radius * c.radius * c.depth /
-                                                sphere_mass(R, 1));
+                                                sphere_volume(R));
     const int n = static_cast<int>(c.radius / spacing) + 1;
     Random random(2);
     const double most = 0.45 * (spacing - 2 * R);

@@ -126,7 +126,7 @@ struct Soil {
         const int columns = static_cast<int>(across / (2.1 * R)) + 1,
                   rows = std::max(1, static_cast<int>(bed.width / (2.1 * R)));
         const auto count = static_cast<int>(
-            std::lround(packing * bed.length * bed.width * bed.depth / sphere_mass(bed.R, 1)));
+            std::lround(packing * bed.length * bed.width * bed.depth / sphere_volume(bed.R)));
         Random random(bed.seed);
         const auto in = [&](double most) { return random.number(-most, most); };
         for (int k = 0; k < count; ++k) {

@@ -215,6 +215,9 @@ public:
     /// replicas of the samples. The cells are made for them, and step_limits(), the check of the laws and the
     /// memory that is reserved by the first insertion include them. Throws io::InvalidInput.
     void expect(const std::vector<Particle>& samples, std::size_t particles);
+    /// The same for at most this number of clumps of a template with these scales. Throws io::InvalidInput.
+    void expect_clumps(int shape, const std::vector<double>& scales, std::uint16_t replica,
+                       std::size_t clumps);
     /// Reserves memory for further particles.
     void reserve(std::size_t particles) { pending.reserve(pending.size() + particles); }
 
@@ -449,6 +452,7 @@ private:
     ClumpState clump_state(std::uint32_t number) const;
     ClumpState clump_state(const Clump& pending) const;
     double reach_of_clumps() const;
+    void check_size(int shape, double scale, const std::string& where) const;
     void insert_clumps(const std::vector<Particle>& moved);
     std::vector<Particle> clump_places() const;
     void update_clump_tables();
@@ -520,6 +524,7 @@ private:
     struct Expected {
         std::vector<Particle> samples;
         std::size_t particles;
+        double reach = 0;  ///< of clumps, see reach_of_clumps() [m]
     };
     std::vector<Expected> expected;  ///< see expect()
     std::size_t reserved = 0;        ///< number of particles for which the first insertion reserves memory

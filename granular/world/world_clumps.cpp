@@ -57,27 +57,19 @@ int World::add_template(const ClumpTemplate& t)
     return static_cast<int>(templates.size()) - 1;
 }
 
-std::uint32_t World::add_clump(const Clump& given)
+/// Throws io::InvalidInput if the scale of a clump is not positive or too large for a periodic axis.
+void World::check_size(int number, double scale, const std::string& where) const
 {
-    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
-    const std::string where = clump_name(id);
-    if (given.shape < 0 || given.shape >= static_cast<int>(templates.size()))
-        refuse(where, "no clump has this number", given.shape);
-    if (!(given.scale > 0) || !std::isfinite(given.scale))
-        refuse(where, "the scale must be positive", given.scale);
-    if (!(std::abs(length(given.e) - 1) < 1e-3))
-        refuse(where, "Euler parameters must have the length 1 within 1e-3", length(given.e));
-    Clump c = given;
-    c.e = unit(given.e), c.id = id;
-    const ClumpTemplate& t = templates[static_cast<std::size_t>(c.shape)];
-    c.mass = t.mass * (c.scale * c.scale * c.scale);
-    const ClumpShape& shape = clump_tables.shape[static_cast<std::size_t>(c.shape)];
+    if (number < 0 || number >= static_cast<int>(templates.size()))
+        refuse(where, "no clump has this number", number);
+    if (!(scale > 0) || !std::isfinite(scale)) refuse(where, "the scale must be positive", scale);
+    const ClumpTemplate& t = templates[static_cast<std::size_t>(number)];
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 size = options.high - options.low;
         const double length = axis == 0   ? size.x
                               : axis == 1 ? size.y
                                           : size.z,
-                     diameter = 2 * c.scale * t.bounding_radius();
+                     diameter = 2 * scale * t.bounding_radius();
         if (options.periodic[static_cast<std::size_t>(axis)] && !(1.1 * diameter <= length))
             refuse(where,
                    std::string("along ") + "xyz"[axis] +
@@ -85,6 +77,39 @@ std::uint32_t World::add_clump(const Clump& given)
                        io::shortest(1.1 * diameter) + " m; length [m]",
                    length);
     }
+}
+
+void World::expect_clumps(int shape, const std::vector<double>& scales, std::uint16_t replica,
+                          std::size_t clumps)
+{
+    Expected of{{}, 0};
+    for (const double scale : scales) {
+        check_size(shape, scale, "expected clump");
+        const ClumpTemplate& t = templates[static_cast<std::size_t>(shape)];
+        for (const Sphere& s : t.spheres)
+            of.samples.push_back(checked({.radius = scale * s.radius,
+                                          .material = t.material,
+                                          .mass = t.mass * (scale * scale * scale),
+                                          .replica = replica},
+                                         "expected clump"));
+        of.reach = std::max(of.reach, scale * clump_tables.shape[static_cast<std::size_t>(shape)].reach);
+        of.particles = clumps * t.spheres.size();
+    }
+    if (!of.samples.empty()) expected.push_back(of);
+}
+
+std::uint32_t World::add_clump(const Clump& given)
+{
+    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
+    const std::string where = clump_name(id);
+    check_size(given.shape, given.scale, where);
+    if (!(std::abs(length(given.e) - 1) < 1e-3))
+        refuse(where, "Euler parameters must have the length 1 within 1e-3", length(given.e));
+    Clump c = given;
+    c.e = unit(given.e), c.id = id;
+    const ClumpTemplate& t = templates[static_cast<std::size_t>(c.shape)];
+    c.mass = t.mass * (c.scale * c.scale * c.scale);
+    const ClumpShape& shape = clump_tables.shape[static_cast<std::size_t>(c.shape)];
     const EulerParameters<double> e{c.e[0], {c.e[1], c.e[2], c.e[3]}},
         p = product(e, clump_axes[static_cast<std::size_t>(c.shape)]);
     std::vector<Particle> members;

@@ -133,7 +133,9 @@ Domain World::domain_of(const std::vector<Particle>& all) const
     double cell = cell_diameter(diameters, in.skin);
     if (!set_cells(grid, cell + in.skin, in.replicas)) cell = largest;
     // The particles of a clump can be outside the domain, by less than a cell.
-    const double reach = reach_of_clumps(), least = std::max(largest, reach) + in.skin;
+    double reach = reach_of_clumps();
+    for (const Expected& e : expected) reach = std::max(reach, e.reach);
+    const double least = std::max(largest, reach) + in.skin;
     double edge = std::max(cell, reach) + in.skin;
     // Cells that are wider than necessary make the length unit coarser.
     constexpr double largest_factor = 8;

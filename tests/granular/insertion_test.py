@@ -72,6 +72,35 @@ def interruptions(runs, case):
         runs.remove("seed")
 
 
+def clumps(runs):
+    """Inserted clumps: mass flow, the mass balance with outflow, and one result for any threads and interruptions"""
+    pair = {"name": "pair", "material": "glass", "spheres": [{"radius": 6e-4}, {"r": [8e-4, 0, 0], "radius": 5e-4}]}
+    feed = [dict(entry, clump="pair") for entry in FEED]
+    feed[0]["sizes"] = {"type": "uniform", "least_radius": 7e-4, "largest_radius": 1e-3}
+    for entry in feed:
+        del entry["material"]
+    case = runs.case("clumps", **dict(FED, clumps=[pair], insert=feed))
+    runs.finish(case, *END, "--output", "clumps")
+    clumps, particles, left = (rows(runs, "clumps", f"{name}.csv") for name in ("clumps", "particles", "outflow"))
+    summary, last = runs.summary("clumps"), rows(runs, "clumps", "run.csv")[-1]
+    by_name = {entry["name"]: entry for entry in summary["insertions"]}
+    expect(by_name["feed"]["particles"] == 120, f"rate times time in clumps: {by_name}")
+    expect(abs(by_name["insertion 1"]["mass"] / (0.02 * (0.1 - 0.01)) - 1) < 0.05, f"mass rate times time: {by_name}")
+    expect(2 * len(clumps) == len(particles) and len(left) > 50, f"{len(clumps)} clumps of {len(particles)} spheres, {len(left)} have left")
+    expect(len(particles) + len(left) == 2 * int(last["inserted"]), f"all spheres are in one table: {last}")
+    inside, put = sum(float(c["mass"]) for c in clumps), sum(entry["mass"] for entry in by_name.values())
+    expect(abs(inside + summary["outflow"]["mass"] - put) < 1e-6 * put, f"{put} kg inserted, {inside} kg inside")
+    whole = runs.sha("clumps")
+    runs.finish(case, *END, "--output", "other", "--threads", "3")
+    expect(runs.sha("other") == whole, "three threads write the same files")
+    runs.remove("other")
+    for first in ("0.0205", "0.0533"):
+        runs.finish(case, "--end", first, "--output", "cut", "--threads", "2")
+        runs.finish(case, *END, "--output", "cut", "--resume")
+        expect(runs.sha("cut") == whole, f"a run with clumps continued from {first} s writes the same files")
+        runs.remove("cut")
+
+
 def blocked(runs):
     """An insertion without place ends with 4, with its region; the last state is kept"""
     box = {"type": "box", "low": [0.006, 0.006, 0.01], "high": [0.012, 0.012, 0.014]}
@@ -103,6 +132,7 @@ def main():
         case = runs.case("fed", **FED)
         mass_flow(runs, case)
         interruptions(runs, case)
+        clumps(runs)
         blocked(runs)
     print("particles are inserted, and their mass is balanced")
 

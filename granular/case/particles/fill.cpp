@@ -42,7 +42,7 @@ FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius)
 double estimated_count(const FillSpec& f)
 {
     if (!f.particles.empty()) return static_cast<double>(f.particles.size());
-    return f.clumps.spheres *
+    return (f.clumps ? f.clumps.spheres() : 1) *
            f.type->estimated_count(f, f.high - f.low - 2 * Vec3{f.radius, f.radius, f.radius});
 }
 

@@ -33,7 +33,7 @@ struct FillSpec {
     std::vector<Particle> particles = {};  ///< of the table; empty for the other types
     std::uint64_t checksum = 0;            ///< of the table file
     std::string file = {};                 ///< name of the table file
-    FilledClumps clumps = {};              ///< in place of the particles
+    PlacedClumps clumps = {};              ///< in place of the particles
 };
 
 /// A type of fill. A file registers it by io::Registry<FillType>::add.

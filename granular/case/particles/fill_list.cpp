@@ -11,6 +11,7 @@ namespace {
 void add_filled(const FillSpec& spec, World& world)
 {
     std::size_t number = 0;
+    // of their own, so that places and velocities are those of particles
     Random turns(SplitMix::mixed(spec.seed));
     fill(spec, [&](const Particle& p) {
         try {
@@ -27,7 +28,7 @@ void add_filled(const FillSpec& spec, World& world)
 
 void FillList::read(ObjectReader& o, Case& c, EntryKeys& keys, const WorldOptions& options)
 {
-    const FilledClumps clumps = read_filled_clumps(o, *c.world);
+    const PlacedClumps clumps = read_placed_clumps(o, *c.world);
     FillSpec spec = read_fill(o, clumps ? std::optional(clumps.radius) : std::nullopt);
     spec.clumps = clumps;
     const bool from_csv = !spec.particles.empty();

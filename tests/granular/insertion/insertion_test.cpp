@@ -165,6 +165,72 @@ TEST_CASE("particles are inserted at their rate, without contact, between two ti
     CHECK(world.watch().largest_overlap == 0);
 }
 
+TEST_CASE("inserted clumps have the mass flow of the insertion and touch nothing", "[granular][insertion]")
+{
+    WorldOptions o = options();
+    o.periodic = {true, false, false};
+    World world = with_law(o);
+    const granular::ClumpTemplate rod = granular::solid_clump(
+        "rod", {{{0, 0, 0}, R}, {{1.5e-3, 0, 0}, R}, {{3e-3, 0, 0}, R}}, glass().density);
+    InsertionSpec s = in_box({0, 0, 0}, {0.04, 0.02, 0.02});
+    s.clumps.shape = world.add_template(rod);
+    s.clumps.of = rod, s.clumps.radius = rod.bounding_radius();
+    s.sizes = Sizes({{1.5e-3, 3e-3, 1}}, Share::of_number);
+    s.density = rod.mass / granular::sphere_volume(s.clumps.radius);
+    s.flow.mass_rate = 60 * rod.mass / 1e-2, s.interval = 10;
+    Insertions insertions;
+    insertions.all.emplace_back(s);
+    insertions.start(world, 1e-2);
+    world.step(1001);
+    const std::vector<granular::Clump> clumps = world.clumps();
+    REQUIRE(clumps.size() == static_cast<std::size_t>(insertions.count()));
+    CHECK(clumps.size() > 60);  // they are smaller than the template
+    CHECK(world.count() == 3 * clumps.size());
+    double mass = 0, least = 1, largest = 0;
+    Vec3 mean_axis{0, 0, 0};
+    for (const granular::Clump& c : clumps) {
+        mass += c.mass, least = std::min(least, c.scale), largest = std::max(largest, c.scale);
+        const granular::EulerParameters<double> p{c.e[0], {c.e[1], c.e[2], c.e[3]}};
+        mean_axis += (1. / static_cast<double>(clumps.size())) * granular::rotated(p, Vec3{1, 0, 0});
+    }
+    CHECK(mass == Approx(insertions.mass()).epsilon(1e-6));
+    CHECK(std::abs(mass - s.flow.mass_rate * 1e-2) < rod.mass);
+    CHECK(least < 1.1 * 1.5e-3 / s.clumps.radius);
+    CHECK(largest > 0.9 * 3e-3 / s.clumps.radius);
+    CHECK(mean_axis.norm() < 0.3);  // isotropic: its deviation is 1/√n
+    CHECK(world.contacts().empty());
+    for (const Particle& p : world.particles()) CHECK((p.r.y >= p.radius && p.r.z >= p.radius));
+}
+
+TEST_CASE("an inserted clump of one sphere has the bits of an inserted particle", "[granular][insertion]")
+{
+    const auto run = [](bool clumps) {
+        WorldOptions o = options(0.02);
+        o.periodic = {true, true, false}, o.high.z = 0.05;
+        o.gravity = {0, 0, -9.81};
+        World world = with_law(o);
+        world.add(Boundary());  // the plane z = 0
+        InsertionSpec s = in_box({0, 0, 0.01}, {0.02, 0.02, 0.02});
+        if (clumps) {
+            const granular::ClumpTemplate ball =
+                granular::solid_clump("ball", {{{0, 0, 0}, R}}, glass().density);
+            s.clumps.shape = world.add_template(ball);
+            s.clumps.of = ball, s.clumps.radius = ball.bounding_radius(), s.clumps.orientation = {1, 0, 0, 0};
+        }
+        s.flow.rate = 5000, s.flow.random_v = 0.3, s.interval = 20;
+        Insertions insertions;
+        insertions.all.emplace_back(s);
+        insertions.start(world, 0.03);
+        world.step(3000);
+        return world.particles();
+    };
+    const std::vector<Particle> one = run(false), other = run(true);
+    REQUIRE(one.size() > 100);
+    REQUIRE(one.size() == other.size());
+    for (std::size_t k = 0; k < one.size(); ++k)
+        CHECK((one[k].r == other[k].r && one[k].v == other[k].v && one[k].omega == other[k].omega));
+}
+
 TEST_CASE("a random velocity has the given magnitude and no preferred direction", "[granular][insertion]")
 {
     World world = with_law(options());

@@ -82,7 +82,7 @@ void BoundaryList::add(NamedBoundary& n, ObjectReader& o, EntryKeys& keys)
     n.motion.boundary = o.located([&] {
         return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
     });
-    if (n.mesh) meshes.add(o.place(), n, *out.world, out.notices);
+    surfaces.add(o.place(), n, *out.world, out.notices);
     n.mesh.reset();  // the world has its triangles
     if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);
     if (n.part_of.empty() ? n.moves() : find(n.part_of)->moves()) out.moving.push_back(n.motion.boundary);

@@ -6,7 +6,7 @@
 #include "granular/case/boundary_keys.hpp"
 #include "granular/case/case_file.hpp"
 #include "granular/case/entry_keys.hpp"
-#include "granular/case/mesh_notices.hpp"
+#include "granular/case/surface_notices.hpp"
 
 namespace hilda::granular {
 
@@ -22,9 +22,14 @@ public:
     /// Evaluates the formulas of the boundaries for the first step, and registers them for all steps.
     void start_motions() const;
 
-    /// Notices about the meshes that depend on the particles, which have been added
-    void check_sizes(double diameter) { meshes.check_sizes(*out.world, diameter, out.notices); }
-    void check_sides() { meshes.check_sides(*out.world, out.notices); }
+    /// Notices that depend on the largest diameter of the particles
+    void check_sizes(double diameter)
+    {
+        surfaces.check_sizes(*out.world, diameter, out.notices);
+        surfaces.check_periodic_sides(*out.world, diameter, out.notices);
+    }
+    /// Notices that depend on the places of the particles, which have been added
+    void check_sides() { surfaces.check_sides(*out.world, out.notices); }
     /// Notices about tools that will fall
     void check_tools(const Vec3& gravity);
 
@@ -37,7 +42,7 @@ private:
     Case& out;
     std::vector<std::pair<NamedBoundary, ObjectReader>> bounds;  ///< with their entries
     std::vector<std::pair<BoundaryMotion, ObjectReader>> motions;
-    MeshNotices meshes;
+    SurfaceNotices surfaces;
     std::size_t entry = 0;  ///< of the entry that is read
 };
 

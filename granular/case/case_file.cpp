@@ -142,6 +142,10 @@ private:
             if (&other != &now && other.name == now.name)
                 o.fail("name", "two stages have the same name, got " + io::described(now.name));
         world.removable = world.removable || !now.remove.empty();
+        for (const auto& [name, selections] : now.groups) {
+            EntryKeys::check_group_name(o, "groups", name);
+            keys.groups.number(name);
+        }
     }
 
     void check_groups_of_fields() const
@@ -160,11 +164,18 @@ private:
 
     void check_groups() const
     {
-        for (std::size_t k = 0; k < out.stage_specs.size(); ++k)
-            for (std::size_t m = 0; m < out.stage_specs[k].remove.size(); ++m)
-                if (const Selection& s = out.stage_specs[k].remove[m];
+        const auto check = [&](const std::string& list, const std::vector<Selection>& selections) {
+            for (std::size_t m = 0; m < selections.size(); ++m)
+                if (const Selection& s = selections[m];
                     !s.group.empty() || s.region.shape == CutRegion::Shape::everywhere)
-                    check_group("/stages/" + std::to_string(k) + "/remove/" + std::to_string(m), s.group);
+                    check_group(list + '/' + std::to_string(m), s.group);
+        };
+        for (std::size_t k = 0; k < out.stage_specs.size(); ++k) {
+            const std::string stage = "/stages/" + std::to_string(k);
+            for (const auto& [name, selections] : out.stage_specs[k].groups)
+                check(io::pointer_to(stage + "/groups", name), selections);
+            check(stage + "/remove", out.stage_specs[k].remove);
+        }
     }
 
     void add_material(ObjectReader& o)

@@ -15,13 +15,21 @@ int EntryKeys::material(ObjectReader& o) const
     return material_named(name, materials, [&](const std::string& what) { o.fail("material", what); });
 }
 
+void EntryKeys::check_group_name(const ObjectReader& o, const char* key, const std::string& name)
+{
+    const auto is_forbidden = [](unsigned char c) { return c < ' ' || c == 127 || c == ',' || c == '"'; };
+    if (name.empty() || std::any_of(name.begin(), name.end(), is_forbidden))
+        o.fail(key,
+               "the name of a group must not be empty or contain commas, quotes and control characters, "
+               "because it is in tables, got " +
+                   io::described(name));
+}
+
 int EntryKeys::group(ObjectReader& o)
 {
     if (!o.has("group")) return Groups::none;
-    const std::string name = o.name("group");
-    if (name.find_first_of(",\"") != std::string::npos)
-        o.fail("group", "group must not contain commas and quotes, because it is in tables, got " +
-                            io::described(name));
+    const std::string name = o.text("group");
+    check_group_name(o, "group", name);
     return groups.number(name);
 }
 

@@ -19,6 +19,8 @@ struct EntryKeys {
 
     /// The number of the material of an entry. A single material is the default.
     int material(ObjectReader& o) const;
+    /// Fails at the key if the name cannot be that of a group.
+    static void check_group_name(const ObjectReader& o, const char* key, const std::string& name);
     /// The number of the group of an entry, or Groups::none
     int group(ObjectReader& o);
     std::uint16_t replica(ObjectReader& o) const;

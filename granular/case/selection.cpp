@@ -5,6 +5,7 @@
 #include "granular/world/world.hpp"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace hilda::granular {
@@ -56,21 +57,24 @@ Selection read_selection(ObjectReader o)
 std::vector<std::uint32_t> selected(const World& w, const Groups* groups,
                                     const std::vector<Selection>& selections)
 {
-    std::vector<std::uint32_t> ids;
-    const auto take = [&](std::uint32_t id, const Vec3& x) {
+    const auto is_selected = [&](std::uint32_t id, const Vec3& x) {
         const int number = groups != nullptr ? groups->of(id) : Groups::none;
         const auto contains = [&](const Selection& s) {
             return (s.group.empty() ||
                     (number != Groups::none && groups->names[static_cast<std::size_t>(number)] == s.group)) &&
                    s.region.contains(x);
         };
-        if (std::any_of(selections.begin(), selections.end(), contains)) ids.push_back(id);
+        return std::any_of(selections.begin(), selections.end(), contains);
     };
+    std::set<std::uint32_t> clumps;  // first ids
+    for (const Clump& c : w.clumps())
+        if (is_selected(c.id, c.r)) clumps.insert(c.id);
+    std::vector<std::uint32_t> ids;
     w.each_particle([&](const Particle& p) {
-        if (p.clump < 0) take(p.id, p.r);
+        const bool is_in =
+            p.clump < 0 ? is_selected(p.id, p.r) : clumps.count(static_cast<std::uint32_t>(p.clump)) > 0;
+        if (is_in) ids.push_back(p.id);
     });
-    for (const Clump& c : w.clumps()) take(c.id, c.r);
-    std::sort(ids.begin(), ids.end());
     return ids;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Particles that a stage removes: those of a group, of a region, or of both.
+/// Particles that a stage removes or assigns to a group: those of a group, of a region, or of both.
 
 #pragma once
 
@@ -34,8 +34,8 @@ struct Selection {
 /// Reads a region with the keys of its type, and `group`. Throws io::PlacedError.
 Selection read_selection(ObjectReader o);
 
-/// The ids of the particles that one selection at least contains, in ascending order; of a clump, that of its
-/// first particle. Without groups (nullptr) no selection has a group.
+/// The ids of the particles that one selection at least contains, in ascending order. A clump is selected
+/// with all of its particles. Without groups (nullptr) no selection has a group.
 std::vector<std::uint32_t> selected(const World& w, const Groups* groups,
                                     const std::vector<Selection>& selections);
 

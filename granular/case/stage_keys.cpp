@@ -19,19 +19,18 @@ RestCondition read_condition(ObjectReader o, double h)
     return c;
 }
 
-/// The elements of `remove`: names of groups and regions
-std::vector<Selection> read_selections(ObjectReader& o)
+/// Names of groups, and regions
+std::vector<Selection> read_selections(ObjectReader& o, const std::string& key)
 {
     std::vector<Selection> all;
-    const io::Json::List& elements = o.list("remove", false);
+    const io::Json::List& elements = o.list(key, false);
     for (std::size_t k = 0; k < elements.size(); ++k) {
         if (elements[k].string() != nullptr)
             all.push_back({*elements[k].string(), {}});
         else if (elements[k].members() != nullptr)
-            all.push_back(read_selection(o.object("remove", k)));
+            all.push_back(read_selection(o.object(key, k)));
         else
-            o.fail("remove", k,
-                   "remove must list names of groups and regions, got " + io::described(elements[k]));
+            o.fail(key, k, key + " must list names of groups and regions, got " + io::described(elements[k]));
     }
     return all;
 }
@@ -55,7 +54,13 @@ StageSpec read_stage(ObjectReader& o, double h)
             o.fail("set", "set must be an object of JSON pointers and values, got " + io::described(*set));
         for (const io::Json::Member& m : *set->members()) s.set.emplace_back(m.key, m.value);
     }
-    s.remove = read_selections(o);
+    if (const io::Json* groups = o.find("groups"); groups != nullptr) {
+        ObjectReader names = o.object("groups");
+        for (const io::Json::Member& m : *groups->members())
+            if (m.key != "note") s.groups.emplace_back(m.key, read_selections(names, m.key));
+        o.record("groups", names.finish());
+    }
+    s.remove = read_selections(o, "remove");
     o.finish();
     return s;
 }

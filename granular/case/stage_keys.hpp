@@ -26,7 +26,9 @@ struct StageSpec {
     std::optional<RestCondition> until;                 ///< ends the stage earlier
     bool fails = false;                                 ///< the run fails if the condition is not met in time
     std::vector<std::pair<std::string, io::Json>> set;  ///< pointers and new values
-    std::vector<Selection> remove;                      ///< particles that are removed at the start
+    /// Names of groups and the particles that are assigned to them at the start, one after the other
+    std::vector<std::pair<std::string, std::vector<Selection>>> groups;
+    std::vector<Selection> remove;  ///< particles that are removed at the start, after `groups`
 };
 
 /// Reads an entry of `stages` of a case with a step h [s]. Throws io::PlacedError.

@@ -137,7 +137,7 @@ private:
                 throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
             } catch (const ParticleLost&) {  // the first step reports it
             }
-            if (c.stages != nullptr && c.stages->allow_no_step(*c.world) && earlier.end != steps)
+            if (c.stages != nullptr && c.stages->have_no_step_left(*c.world) && earlier.end != steps)
                 refuse_end_after_stages(o, c.world->t());
             if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
             if (before_change) begin_change();
@@ -407,18 +407,23 @@ private:
             parts[part] = a.bytes();
         };
         add(c.stages != nullptr, stages_part, [&](io::Archive& a) { c.stages->transfer(a); });
-        add(grows_groups(), groups_part, [&](io::Archive& a) { c.groups->transfer(a); });
+        add(changes_groups(), groups_part, [&](io::Archive& a) { c.groups->transfer(a); });
     }
     void read_parts(const io::Sinks<CaseSetup>::Saved& parts, const std::string& file)
     {
         if (const auto at = parts.find(changes_part); at != parts.end()) history.read(at->second, file);
-        if (grows_groups())
+        if (changes_groups())
             read_part(parts, groups_part, file, [&](io::Archive& a) { c.groups->transfer(a); });
         if (c.stages == nullptr) return;
         read_part(parts, stages_part, file, [&](io::Archive& a) { c.stages->transfer(a); });
         c.stages->resume(c);
     }
-    bool grows_groups() const { return c.groups != nullptr && c.insertions != nullptr; }
+    bool changes_groups() const
+    {
+        const auto assigns = [](const StageSpec& s) { return !s.groups.empty(); };
+        return c.groups != nullptr &&
+               (c.insertions != nullptr || std::any_of(c.stage_specs.begin(), c.stage_specs.end(), assigns));
+    }
     void transfer_insertions(io::Archive& a) const
     {
         if (c.insertions != nullptr) c.insertions->transfer(a);

@@ -105,7 +105,7 @@ long Stages::steps_in(double time) const { return std::max(1L, std::lround(std::
 void Stages::begin_run(Case& c, const Warn& warn)
 {
     begin(c);
-    report_removal(*c.world, warn);
+    report_selections(*c.world, warn);
 }
 
 /// Begins the next stage at the present instant.
@@ -118,15 +118,33 @@ void Stages::begin(Case& c)
         set_parameters(c, changes[k].to, changes[k].pointers, c.world->t());
         begin_change(c, changes[k].to, changes[k].pointers);
     }
-    if (spec[k].remove.empty()) return;
+    select(c);
+}
+
+/// Assigns particles to groups and removes particles, at the start of the present stage.
+void Stages::select(Case& c)
+{
+    without_particles.clear();
+    for (const auto& [name, selections] : what().groups) {
+        const std::vector<std::uint32_t> ids = selected(*c.world, c.groups.get(), selections);
+        c.groups->assign(ids, c.groups->number(name));
+        if (ids.empty()) without_particles.push_back(name);
+    }
+    if (what().remove.empty()) return;
     const auto before = static_cast<std::int64_t>(c.world->count());
-    c.world->remove(selected(*c.world, c.groups.get(), spec[k].remove));
+    c.world->remove(selected(*c.world, c.groups.get(), what().remove));
     log.back().removed = before - static_cast<std::int64_t>(c.world->count());
 }
 
-/// Warns if the present stage, which has just begun, removes particles and has found none.
-void Stages::report_removal(const World& w, const Warn& warn) const
+/// Warns if the present stage, which has just begun, removes particles or assigns them to groups and has
+/// found none.
+void Stages::report_selections(const World& w, const Warn& warn) const
 {
+    for (const std::string& name : without_particles)
+        warn("stage_groups",
+             io::formatted(
+                 "stage '%s': groups: no particle is in the groups and regions of '%s' at t = %.9g s",
+                 what().name.c_str(), name.c_str(), w.t()));
     if (!what().remove.empty() && log.back().removed == 0)
         warn("stage_remove",
              io::formatted("stage '%s': remove: no particle is in its groups and regions at t = %.9g s",
@@ -184,7 +202,7 @@ void Stages::update(Case& c, const Warn& warn)
             throw StageFailed("stage_motion",
                               "stage '" + spec[log.size()].name + "': " + e.pointer + ": " + e.reason);
         }
-        report_removal(w, warn);
+        report_selections(w, warn);
     }
 }
 

@@ -23,7 +23,8 @@ public:
     Stages(const Case& c, const Environment& environment);
 
     /// Receives a warning with its name: stage_timeout of a condition that is not met in time, stage_end of a
-    /// stage that has no steps because its end is past, stage_remove of a `remove` that no particle meets.
+    /// stage that has no steps because its end is past, stage_remove and stage_groups of a stage that
+    /// removes, or assigns to a group, no particle.
     using Warn = std::function<void(const char* name, const std::string& text)>;
 
     /// Begins the first stage, at the initial state.
@@ -35,7 +36,7 @@ public:
     /// Whether the last stage is over, and with it the run
     bool have_ended() const { return is_over; }
     /// Whether no further step is possible at the present instant, with any end of the run
-    bool allow_no_step(const World& w) const { return is_over || (is_last() && is_late(w)); }
+    bool have_no_step_left(const World& w) const { return is_over || (is_last() && is_late(w)); }
     long number() const { return static_cast<long>(log.size()) - 1; }  ///< of the present stage
     const StageSpec& what() const { return spec[log.size() - 1]; }
     bool is_last() const { return log.size() == spec.size(); }
@@ -69,7 +70,8 @@ private:
     static Change read_change(const Case& c, io::JsonSource& source, const StageSpec& s,
                               const Environment& environment);
     void begin(Case& c);
-    void report_removal(const World& w, const Warn& warn) const;
+    void select(Case& c);
+    void report_selections(const World& w, const Warn& warn) const;
     bool is_at_rest(const World& w);
     bool is_late(const World& w) const;
     void check_ends(const Case& c) const;
@@ -83,6 +85,7 @@ private:
     double largest_energy = 0;   ///< kinetic, of the present stage [J]
     std::optional<bool> is_met;  ///< whether the condition of the present stage was met at its end
     bool is_over = false;
+    std::vector<std::string> without_particles;  ///< groups to which the present stage has assigned none
 };
 
 }  // namespace hilda::granular

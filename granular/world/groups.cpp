@@ -4,6 +4,7 @@
 #include "io/archive.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace hilda::granular {
 
@@ -20,6 +21,23 @@ int Groups::number(const std::string& name)
 void Groups::add(std::uint32_t first, int group)
 {
     if (runs.empty() ? group != none : runs.back().group != group) runs.push_back({first, group});
+}
+
+void Groups::assign(const std::vector<std::uint32_t>& ids, int group)
+{
+    std::map<std::uint32_t, int> from;  // the group of the ids from each one on
+    for (const Run& r : runs) from[r.first] = r.group;
+    for (std::size_t k = 0; k < ids.size();) {
+        const std::uint32_t first = ids[k];
+        std::uint32_t end = first;
+        for (; k < ids.size() && ids[k] == end; ++k) ++end;
+        const int after = of(end);
+        from.erase(from.lower_bound(first), from.lower_bound(end));
+        from[first] = group;
+        from.emplace(end, after);
+    }
+    runs.clear();
+    for (const auto& [first, number] : from) add(first, number);
 }
 
 int Groups::of(std::uint32_t id) const

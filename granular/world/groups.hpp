@@ -23,8 +23,10 @@ public:
     int number(const std::string& name);
     /// The particles with ids from `first` on are in this group. The calls have ascending ids.
     void add(std::uint32_t first, int group);
+    /// The particles with these ids, in ascending order, are in this group from now on.
+    void assign(const std::vector<std::uint32_t>& ids, int group);
     int of(std::uint32_t id) const;  ///< number of a group, or none
-    /// For checkpoints: insertions add particles during a run.
+    /// For checkpoints: insertions add particles during a run, and stages assign them to other groups.
     void transfer(io::Archive& a);
 
 private:

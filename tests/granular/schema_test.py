@@ -80,6 +80,7 @@ EVERYTHING = {
     "stages": [{"name": "settle", "duration": 1e-5, "until": {"kinetic_energy": 1e-9, "share": 1e-4, "from": 1e-5, "interval": 1e-5},
                 "on_timeout": "warn"},
                {"name": "load", "end": 0.5, "set": {"/boundaries/lid/F": [0, 0, "-t"], "/laws/0/mu": 0.2, "/insert/feed/active": False},
+                "groups": {"top": ["ball", {"type": "half_space", "r": [0, 0, 1], "normal": [0, 0, 1]}]},
                 "remove": ["ball", {"type": "box", "low": [0, 0, 0], "high": [0.1, 0.1, 0.1], "note": "a corner"},
                            {"type": "cylinder", "r": [0, 0, 0], "axis": [0, 0, 1], "radius": 0.1, "length": 0.2, "group": "ball"},
                            {"type": "half_space", "r": [0, 0, 1.5], "normal": [0, 0, 1], "group": "ball"}]}]}
@@ -181,7 +182,7 @@ BY_BOTH = [
     ("/particles/1/scale", 0, "/particles/1/scale: scale must be positive, got 0"),
     ("/particles/0/scale", 2, "/particles/0/scale: scale is only for a particle with clump"),
     ("/fill/3/material", "steel", "/fill/3/material: material must not be given together with clump"),
-    ("/fill/0/orientation", [1, 0, 0, 0], "/fill/0/orientation: orientation is only for a fill with clump"),
+    ("/fill/0/orientation", [1, 0, 0, 0], "/fill/0/orientation: orientation requires the key clump"),
     ("/steps", 5, "/steps: unknown key \"steps\""),
     ("/name", 5, "/name: name must be a string"),
     ("/note", [], "/note: note must be a string"),

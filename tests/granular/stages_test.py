@@ -255,7 +255,13 @@ def errors(runs):
     refused("/stages/0/set", "the stability limit of the step is .* with these laws, the step is 5e-06; --force overrides",
             {"name": "hard", "set": {"/laws/0/normal": {"law": "hertz"}, "/laws/1/normal/k_n": 1e9}},
             laws=[CASE["laws"][0], {"between": ["glass", "steel"], "mu": 0.3, "normal": {"law": "hooke", "k_n": 1e3, "gamma_n": 10}}])
-    refused("/particles/0/group", 'group must not contain commas and quotes, because it is in tables, got "a,b"', one,
+    tables = "the name of a group must not be empty or contain commas, quotes and control characters, because it is in tables, got "
+    refused("/stages/1/groups", tables + '"a,b"', one, {"name": "two", "groups": {"a,b": ["bed"]}})
+    refused("/stages/1/groups", "must be an object, got 3", one, {"name": "two", "groups": 3})
+    refused("/stages/1/groups/red", "red must be a list, got 3", one, {"name": "two", "groups": {"red": 3}})
+    refused("/stages/1/groups/red/0", "no entry has the group 'bedd'; did you mean 'bed'\\?", one, {"name": "two", "groups": {"red": ["bedd"]}})
+    refused("/stages/1/groups/red/0/normal", "normal must", one, {"name": "two", "groups": {"red": [dict(plane, normal=[0, 0, 0])]}})
+    refused("/particles/0/group", tables + '"a,b"', one,
             particles=[dict(GRAIN, r=[0.01, 0.01, 0.045], group="a,b")])
 
 
@@ -338,6 +344,61 @@ def cuts(runs):
     expect(runs.summary("none")["stages"][0]["removed"] == 0 and len(table(runs, "none", "particles.csv")) == len(whole), "nothing is cut")
 
 
+def assigned(runs):
+    """A stage assigns the particles of regions and groups to groups; rows, columns, fields and later removals follow"""
+    upper = {"type": "half_space", "r": [0, 0, 0.012], "normal": [0, 0, 1]}
+    stages = [{"name": "settle", "duration": 0.02},
+              {"name": "mark", "duration": 5e-3, "groups": {"upper": [dict(upper, group="bed"), "lid"], "left": [
+                  {"type": "box", "low": [-1, -1, -1], "high": [0.01, 1, 1], "group": "bed"}]}},
+              {"name": "cut", "remove": ["upper"]}]
+    pair = {"name": "pair", "material": "glass", "spheres": [{"radius": 1e-3}, {"r": [2.1e-3, 0, 0], "radius": 1e-3}]}
+    given = dict(RUN, end=0.03, clumps=[pair], stages=stages, insert=[dict(RUN["insert"][0], active=True)],
+                 particles=RUN["particles"] + [{"clump": "pair", "r": [0.008, 0.01, 0.05], "group": "bed"}])
+    case = runs.case("marked", **given)
+
+    def state(end):
+        runs.finish(case, "--force", "--output", "marked", "--end", end)
+        names = runs.summary("marked")["groups"]
+        rows = table(runs, "marked", "particles.csv")
+        return {row["id"]: (names[int(row["group"])], [float(row[a]) for a in "xyz"], row["clump"]) for row in rows}
+
+    before, after, end = state("0.02"), state("0.020005"), state("0.03")
+    place = {key: (r if clump == "-1" else [(a + b) / 2 for a, b in zip(r, before[str(int(clump) + 1)][1])])
+             for key, (_, r, clump) in before.items() if clump in ("-1", key)}
+    for key, (group, _, clump) in before.items():
+        r = place[key if clump == "-1" else clump]
+        expected = group
+        if group == "lid" or group == "bed" and r[2] >= 0.012:
+            expected = "upper"
+        elif group == "bed" and r[0] <= 0.01:
+            expected = "left"
+        expect(after[key][0] == expected, f"particle {key} of {group} at {r}: {after[key][0]}, not {expected}")
+    counts = {name: sum(group == name for group, _, _ in after.values()) for name in ("upper", "left", "bed", "fed", "ball")}
+    expect(min(counts.values()) > 0, f"{counts}")
+    rows = {(row["t"], row["name"]): int(row["particles"]) for row in table(runs, "marked", "groups.csv")}
+    for name in ("upper", "left", "bed"):
+        expect(rows["0.02", name] == (0 if name != "bed" else sum(group == "bed" for group, _, _ in before.values())),
+               f"a row at the end of a stage belongs to this stage: {name}, {rows['0.02', name]}")
+        expect(rows["0.021", name] == counts[name], f"{name}: {rows['0.021', name]}, {counts[name]}")
+    expect(all(group != "upper" for group, _, _ in end.values()), "the group is removed")
+    expect(runs.summary("marked")["stages"][2]["removed"] == counts["upper"], "a later stage removes the new group")
+    expect({key for key in end if key in after} == {key for key, (group, _, _) in after.items() if group != "upper"}, "all others remain")
+    # one result for threads and continuations
+    whole = content(runs, "marked")
+    for at in ("0.0199", "0.02", "0.020005", "0.0213", "0.025", "0.0251"):
+        runs.finish(case, "--output", "cut", "--end", at, "--threads", "2")
+        runs.finish(case, "--output", "cut", "--resume", "--end", "0.03")
+        expect(content(runs, "cut")[1] == whole[1], f"a run continued at {at} has the same state")
+        expect(table(runs, "cut", "groups.csv") == table(runs, "marked", "groups.csv"), f"a run continued at {at} has the same groups")
+        runs.remove("cut")
+    # nothing is there
+    far = {"type": "half_space", "r": [0, 0, 0.075], "normal": [0, 0, 1]}
+    runs.case("none", **dict(given, stages=[{"name": "mark", "groups": {"top": [far]}}]))
+    message = "stage 'mark': groups: no particle is in the groups and regions of 'top' at t = 0 s"
+    expect(message in runs.finish("none", "--output", "unmet", "--end", "1e-3"), "a warning of a group without particles")
+    runs.refused("none", 4, r"\[stage_groups\]: " + message, "--output", "unmet-strict", "--strict", "--end", "1e-3")
+
+
 def cut_of_a_bed(runs):
     """A bed is cut while it moves: one result for the number of threads and a continuation at the cut"""
     at = 0.02
@@ -386,6 +447,7 @@ def main():
         whole_entries(runs)
         clumps(runs)
         cuts(runs)
+        assigned(runs)
         cut_of_a_bed(runs)
         fields(runs)
         one_result(runs)

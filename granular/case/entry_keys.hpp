@@ -15,7 +15,8 @@ struct Case;
 struct EntryKeys {
     std::vector<Material> materials;
     Groups groups;
-    std::string free;  ///< pointer of the first boundary with a mass; empty if there is none
+    std::string free;        ///< pointer of the first boundary with a mass; empty if there is none
+    bool has_fixed = false;  ///< whether a particle is fixed by its entry
 
     /// The number of the material of an entry. A single material is the default.
     int material(ObjectReader& o) const;

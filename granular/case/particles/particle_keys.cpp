@@ -3,6 +3,8 @@
 
 #include "granular/reading/clump_keys.hpp"
 
+#include <utility>
+
 namespace hilda::granular {
 
 namespace {
@@ -44,6 +46,10 @@ double read_particle(ObjectReader& o, Case& c, EntryKeys& keys, const WorldOptio
     const std::optional<Vec3> force = o.has("force") ? std::optional(o.vec3("force")) : std::nullopt;
     const int group = keys.group(o);
     o.finish();
+    if (p.fixed && !keys.free.empty() && !std::exchange(keys.has_fixed, true))
+        c.notices.push_back(o.place("fixed") +
+                            ": a fixed particle does not touch boundaries, also if they have a mass as " +
+                            keys.free + " has; particles that shall carry it must be free to move");
     if (!adds) return diameter;
     const std::uint32_t id = o.located([&] { return c.world->add(p); });
     keys.groups.add(id, group);

@@ -75,6 +75,26 @@ TEST_CASE("a boundary that reaches a periodic side and does not continue across 
                                                ", across which it has no images"));
 }
 
+TEST_CASE("a fixed particle in a case with a tool gives a notice", "[granular][case]")
+{
+    const auto of = [](const std::string& mass, const std::string& fixed) {
+        const std::string text =
+            R"({"hilda_case": 1, "domain": {"low": [-1, -1, -1], "high": [1, 1, 1]}, "step": 1e-5, "end": 1e-3, "interval": 1e-4,
+            "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}], "laws": [{"between": ["glass", "glass"], "restitution": 0.8}],
+            "particles": [{"r": [0, 0, -0.5], "radius": 0.01)" +
+            fixed + R"(}, {"r": [0, 0, 0.5], "radius": 0.01)" + fixed +
+            R"(}], "boundaries": [{"type": "sphere", "radius": 0.1, "r": [0, 0, 0])" + mass + "}]}";
+        return granular::read_case(text, "case.json", {}).notices;
+    };
+    const std::string mass = R"(, "mass": 1)", fixed = R"(, "fixed": true)";
+    CHECK(of("", fixed).empty());
+    CHECK(of(mass, "").empty());
+    REQUIRE(of(mass, fixed).size() == 1);
+    CHECK_THAT(of(mass, fixed)[0],
+               Catch::Contains("(/particles/0/fixed): a fixed particle does not touch boundaries") &&
+                   Catch::Contains("/boundaries/0"));
+}
+
 TEST_CASE("the boundaries of a case have the box in which their surfaces are", "[granular][case]")
 {
     granular::NamedBoundary b;

@@ -2,7 +2,7 @@
 #include "granular/program/arguments.hpp"
 
 #include "granular/program/provenance.hpp"
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "io/error.hpp"
 #include "io/json.hpp"
 #include "io/message.hpp"
@@ -126,6 +126,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
               o.device_name = text;
           });
     io::add_sink_options<CaseSetup>(app, o.outputs);
+    app.add_flag(
+        "--exchange", o.exchanges,
+        "let another program move boundaries: it sends their motions to stdin and receives the impulses "
+        "of the particles from stdout (hilda cosim)");
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
     app.add_flag("--strict", o.strict, "end with exit code 4 at a warning of the watch or of a stage");
     app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");

@@ -4,18 +4,24 @@
 
 #include "granular/case/built_in_cases.hpp"
 #include "granular/case/case_schema.hpp"
+#include "granular/cosim/remote_exchange.hpp"
+#include "granular/cosim/soil.hpp"
+#include "granular/program/arguments.hpp"
 #include "granular/program/cases.hpp"
-#include "granular/program/earlier_run.hpp"
 #include "granular/program/laws.hpp"
 #include "granular/program/memory.hpp"
-#include "granular/program/run.hpp"
+#include "granular/program/provenance.hpp"
 #include "granular/program/validate.hpp"
 #include "granular/program/waiting_threads.hpp"
+#include "granular/running/earlier_run.hpp"
+#include "granular/running/run.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/program.hpp"
 
 #include <omp.h>
+#include <unistd.h>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -82,6 +88,19 @@ void print_text(const Options& o)
         std::puts(io::written(case_schema()).c_str());
 }
 
+/// The grains of a co-simulation with the program that has started this one. That program saves and ends the
+/// run after an interruption.
+int exchange(RunOptions o, Continuation read)
+{
+    std::signal(SIGINT, SIG_IGN), std::signal(SIGHUP, SIG_IGN), std::signal(SIGTERM, SIG_IGN);
+    o.quiet = true;
+    Channel channel(STDIN_FILENO, STDOUT_FILENO, "hilda cosim");
+    serve(channel, [&](const std::vector<std::string>& names) -> std::unique_ptr<Exchange> {
+        return std::make_unique<Soil>(o, std::move(read), names);
+    });
+    return io::exit_code::done;
+}
+
 int run_case(const Options& o)
 {
     Environment here{.memory = available_memory(),
@@ -93,15 +112,11 @@ int run_case(const Options& o)
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     if (!o.allow_paths) here.folder = folder_of(o.file);
     const std::string text = text_of_case(o.file);
-    const auto read = [&] {
-        const std::optional<io::JsonSource> earlier =
-            o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
-        if (!earlier) return new_run(text, o.file, here);
-        Environment continued = here;
-        continued.continues = &*earlier;
-        return continued_run(text, o.file, continued, o.output, *earlier);
-    };
-    return run(o, read(), read);
+    RunOptions options = o;
+    options.provenance = provenance(o.command_line, o.threads, o.device_name);
+    const auto read = [&] { return read_run(options, text, here); };
+    if (o.exchanges) return exchange(options, read());
+    return run(options, read(), read);
 }
 
 int run_program(int argc, char** argv)

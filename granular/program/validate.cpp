@@ -2,7 +2,7 @@
 #include "granular/program/validate.hpp"
 
 #include "granular/program/arguments.hpp"
-#include "granular/program/watch_report.hpp"
+#include "granular/running/watch_report.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "io/progress.hpp"

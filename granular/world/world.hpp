@@ -282,6 +282,12 @@ public:
     /// contact loads along its free axes. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }
     const std::vector<Boundary>& all_boundaries() const { return boundaries; }
+    /// Moves a boundary, which is not a part of another one, to another place between two steps: Boundary::r
+    /// and Boundary::p, with which its axis turns. The histories of its contacts continue.
+    void set_place(int number, const Vec3& r, const EulerParameters<double>& p);
+    /// Contact loads on a boundary with a mass and its parts in the last step, about Boundary::r at the time
+    /// of the loads: the beginning of the step, with velocity Verlet its end [N, N m]
+    const Wrench& tool_load(int number) const { return tool_loads.at(static_cast<std::size_t>(number)); }
     const Meshes& all_meshes() const { return *meshes; }
     /// Names of the boundaries in messages about tools; without them they have their numbers.
     void set_boundary_names(std::vector<std::string> names) { boundary_names = std::move(names); }

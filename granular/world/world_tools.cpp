@@ -98,6 +98,20 @@ double World::rotating_reach(std::size_t k) const
         .norm();
 }
 
+void World::set_place(int number, const Vec3& r, const EulerParameters<double>& p)
+{
+    const auto k = static_cast<std::size_t>(number);
+    Boundary& b = boundaries[k];
+    const EulerParameters<double> turn = product(p, {b.p.e0, -b.p.e});
+    const double displacement =
+        (r - b.r).norm() + 2 * std::asin(std::min(turn.e.norm(), 1.)) * rotating_reach(k);
+    b.axis = rotated(turn, b.axis);
+    b.r = r, b.p = p;
+    place_parts();
+    boundary_displacement += displacement, path += displacement;
+    boundaries_changed = true;
+}
+
 /// Moves the boundaries by h v, and rotates meshes, bodies and axes (by Rodrigues' formula) by h ω with the
 /// mean ω of the step; then the parts of bodies. Returns an upper bound of the displacement of the boundary
 /// points within the domain [m].

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// loads.csv: mean and standard deviation over time of the loads on boundaries, of a case with `loads`.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "io/message.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// contact-lists.csv: the contacts at the times of a case with `contacts`.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "granular/world/contact_output.hpp"
 
 #include <algorithm>

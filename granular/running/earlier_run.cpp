@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/program/earlier_run.hpp"
+#include "granular/running/earlier_run.hpp"
 
 #include "granular/case/continued_case.hpp"
 #include "io/archive.hpp"
@@ -52,7 +52,17 @@ std::optional<io::JsonSource> earlier_case(const std::string& directory)
     return io::JsonSource(io::read_file(file, most_of_case), file);
 }
 
-EarlierRun earlier_run(const Options& o, const Case& c)
+Continuation read_run(const RunOptions& o, const std::string& text, const Environment& environment)
+{
+    const std::optional<io::JsonSource> earlier =
+        o.resume ? earlier_case(o.output) : std::optional<io::JsonSource>();
+    if (!earlier) return new_run(text, o.file, environment);
+    Environment continued = environment;
+    continued.continues = &*earlier;
+    return continued_run(text, o.file, continued, o.output, *earlier);
+}
+
+EarlierRun earlier_run(const RunOptions& o, const Case& c)
 {
     const std::optional<io::JsonSource> earlier = earlier_case(o.output);
     if (!earlier) return {};
@@ -68,7 +78,7 @@ EarlierRun earlier_run(const Options& o, const Case& c)
     return run;
 }
 
-void refuse_end(const Options& o, const Case& c, double reached)
+void refuse_end(const RunOptions& o, const Case& c, double reached)
 {
     throw io::UsageError(io::formatted(
         "granular: --end must be after t = %.12g s, which the run in %s has reached, got %.12g; "
@@ -76,7 +86,7 @@ void refuse_end(const Options& o, const Case& c, double reached)
         reached, o.output.c_str(), c.end));
 }
 
-void refuse_end_after_stages(const Options& o, double reached)
+void refuse_end_after_stages(const RunOptions& o, double reached)
 {
     throw io::UsageError(io::formatted(
         "granular: --end has no effect on the run in %s: its last stage has ended at t = %.12g s, and "
@@ -84,7 +94,7 @@ void refuse_end_after_stages(const Options& o, double reached)
         o.output.c_str(), reached));
 }
 
-int report_complete(const Options& o, const Case& c)
+int report_complete(const RunOptions& o, const Case& c)
 {
     if (!o.quiet)
         io::message(

@@ -2,7 +2,7 @@
 /// particles.csv, clumps.csv of a case with clumps, and with --contacts contacts.csv: the particles, clumps
 /// and contacts at the end of the run.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "granular/world/output.hpp"
 #include "io/files.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/program/watch_report.hpp"
+#include "granular/running/watch_report.hpp"
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 
 #include "granular/fields/field_files.hpp"
 #include "granular/fields/field_input.hpp"
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "io/formats/vtk.hpp"
 #include "io/message.hpp"
 

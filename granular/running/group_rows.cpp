@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// groups.csv: number, mass, energy, momentum and centre of mass of each group of particles.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "io/message.hpp"
 
 namespace hilda::granular {

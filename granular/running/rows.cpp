@@ -2,7 +2,7 @@
 /// run.csv: energies, momentum, contacts, mass flow, stress, the loads on the boundaries and the motion of
 /// those that move.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "granular/stages/stages.hpp"
 #include "io/message.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Sinks of a run of a case. A new output format is one file in granular/program.
+/// Sinks of a run of a case. A new output format is one file in granular/running.
 
 #pragma once
 

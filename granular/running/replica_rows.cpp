@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// replicas.csv: a row of run.csv for each replica.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "io/message.hpp"
 
 namespace hilda::granular {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "granular/program/run.hpp"
+#include "granular/running/run.hpp"
 
-#include "granular/program/earlier_run.hpp"
-#include "granular/program/provenance.hpp"
-#include "granular/program/sink.hpp"
-#include "granular/program/watch_report.hpp"
+#include "granular/running/earlier_run.hpp"
+#include "granular/running/sink.hpp"
+#include "granular/running/watch_report.hpp"
 #include "granular/stages/change_history.hpp"
 #include "granular/stages/stages.hpp"
 #include "io/archive.hpp"
@@ -19,6 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 namespace hilda::granular {
 
@@ -30,9 +30,9 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-class CaseRun : private io::Verbosity {
+class CaseRun final : public SteppedRun, private io::Verbosity {
 public:
-    CaseRun(const Options& o, Continuation from, const std::function<Continuation()>& read_again)
+    CaseRun(const RunOptions& o, Continuation from, const std::function<Continuation()>& read_again)
         : Verbosity{o.quiet, o.verbose}, o(o), from(std::move(from)), c(this->from.c),
           read_again(read_again), setup{c, o.output, o.outputs}, id(id_of(c)),
           interval(setup.steps_in(c.interval)), steps(std::lround(c.end / c.h)), files(o.output), sinks(setup)
@@ -40,18 +40,58 @@ public:
 
     int execute()
     {
+        if (const std::optional<int> code = prepare()) return *code;
+        const int code = run_steps();
+        finish(code);
+        return code;
+    }
+
+    /// See SteppedRun::open()
+    void open(long number)
+    {
+        restored_step = number;
+        if (prepare())
+            throw io::UsageError(o.output + ": its run is complete; --end with a later time extends it");
+        if (!resumed)
+            begin_run(true);
+        else if (earlier.end != steps || !from.changes.empty())
+            begin_other_case();
+    }
+    Case& run_case() override { return c; }
+    void step() override
+    {
+        stages_are_over(true);  // the last one lasts as long as the mechanism moves
+        c.world->step();
+        after_step([](const std::string& text) { io::message("hilda: warning: " + text + '\n'); });
+    }
+    void save() override
+    {
+        check_state();
+        write_checkpoint();
+    }
+    void close(int code) override
+    {
+        if (code != io::exit_code::done) status = code >= io::exit_code::signal ? "interrupted" : "failed";
+        finish(code);
+    }
+
+private:
+    /// Makes the run ready for its first step, or restores a checkpoint. Returns the exit code of a run that
+    /// is complete already.
+    std::optional<int> prepare()
+    {
         io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
-        io::OutputLock lock(o.output);
+        lock.emplace(o.output);
         for (const std::string& n : c.notices) warn(n);
         check_step();
         start();  // rejects invalid particles before files are written
         log(io::formatted("%zu particles, %zu boundaries, %ld steps of %g s", c.world->count(),
                           c.boundaries.size(), steps, c.h));
-        lock.create();
+        lock->create();
         if (o.resume) earlier = earlier_run(o, c);
         if (earlier.is_complete && earlier.end == steps && from.changes.empty()) return report_complete(o, c);
         if (earlier.is_complete && earlier.end == steps) refuse_end(o, c, c.end);
-        const bool resumed = o.resume && load();
+        resumed = o.resume && load();
         // with --strict the warnings of an earlier part of the run end this one
         if (resumed && !o.strict) known_warnings = c.world->watch().warnings;
         if (o.resume && !resumed) warn(o.output + ": has no checkpoint; starting from the initial state");
@@ -65,12 +105,9 @@ public:
         }
         resumed_at = c.world->steps();
         begin = saved = Clock::now();
-        const int code = run_steps(resumed);
-        finish(code);
-        return code;
+        return {};
     }
 
-private:
     std::string file(const std::string& name) const { return o.output + '/' + name; }
 
     /// Inserts the particles.
@@ -126,6 +163,9 @@ private:
     {
         return files.load([&](const std::string& bytes, const std::string& file) {
             const bool before_change = restore(bytes, file);
+            if (restored_step >= 0 && c.world->steps() != restored_step)
+                throw io::IoError(io::formatted("%s: is the checkpoint of step %ld, not of step %ld",
+                                                file.c_str(), c.world->steps(), restored_step));
             const long most = std::max(earlier.end, steps);
             if (c.world->steps() > most)
                 throw io::IoError(
@@ -194,7 +234,7 @@ private:
     }
 
     /// Computes the steps. A checkpoint is possible after each of them and does not change the results.
-    int run_steps(bool resumed)
+    int run_steps()
     {
         io::ProgressLine line(o.quiet);
         World& w = *c.world;
@@ -203,18 +243,11 @@ private:
             if (resumed && (earlier.end != steps || !from.changes.empty())) begin_other_case();
             while (w.steps() < steps && io::Interrupt::caught() == 0 && !stages_are_over(true)) {
                 w.step();
-                particle_steps += static_cast<double>(w.count());
-                if (w.watch().warnings != known_warnings)
-                    report_watch(w.watch(), known_warnings, o.strict, c.boundaries,
-                                 [&](const std::string& text) {
-                                     line.clear();
-                                     warn(io::formatted("t = %.9g s: ", w.t()) + text);
-                                 });
-                record();
-                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) {
-                    check_state();
-                    save();
-                }
+                after_step([&](const std::string& text) {
+                    line.clear();
+                    warn(text);
+                });
+                if (o.checkpoint > 0 && seconds_since(saved) > o.checkpoint && w.steps() < steps) save();
                 if (line.is_due()) line.show(progress());
             }
             check_state();  // also the forces, which contacts.csv has
@@ -244,12 +277,24 @@ private:
             return io::exit_code::done;
         }
         status = "interrupted";
-        save();
+        write_checkpoint();
         if (!o.quiet)
             io::message(io::formatted(
                 "hilda: interrupted at t = %.6g s; --resume continues from the checkpoint in %s\n", w.t(),
                 o.output.c_str()));
         return io::exit_code::signal + io::Interrupt::caught();
+    }
+
+    template <class Warn>
+    void after_step(const Warn& warn_of)
+    {
+        const World& w = *c.world;
+        particle_steps += static_cast<double>(w.count());
+        if (w.watch().warnings != known_warnings)
+            report_watch(w.watch(), known_warnings, o.strict, c.boundaries, [&](const std::string& text) {
+                warn_of(io::formatted("t = %.9g s: ", w.t()) + text);
+            });
+        record();
     }
 
     /// Records the initial state, in the first stage.
@@ -320,7 +365,7 @@ private:
             compute_again(c.world->is_complete() ? failed_after - 1 : failed_after);
             if (!has_finite_state()) compute_again(written);
         }
-        save();
+        write_checkpoint();
     }
 
     /// Computes the steps since the last checkpoint, or since the start, again, up to this one. A step that
@@ -362,7 +407,7 @@ private:
     {
         if (!from.changes.empty())
             io::write_file(file(name_of_earlier_case(history.all.size())), from.earlier_text);
-        save();
+        write_checkpoint();
         write_case();
         std::remove(file("summary.json").c_str());
     }
@@ -429,7 +474,7 @@ private:
         if (c.insertions != nullptr) c.insertions->transfer(a);
     }
 
-    void save()
+    void write_checkpoint()
     {
         sinks.sync();
         files.save([&](const io::Append& append) { write_state(sinks.save(), append); });
@@ -508,17 +553,17 @@ private:
         s["timing"] = {{"wall_seconds", seconds},
                        {"steps_per_second", static_cast<double>(w.steps() - resumed_at) / seconds},
                        {"particle_steps_per_second", speed}};
-        s["provenance"] = provenance(o.command_line, o.threads, o.device_name);
+        s["provenance"] = o.provenance;
         s["provenance"]["bytes_per_particle"] =
             w.count() > 0 ? static_cast<double>(w.bytes()) / static_cast<double>(w.count()) : 0;
         if (resumed_at > 0) s["provenance"]["resumed_at_step"] = resumed_at;
         return s.text();
     }
 
-    const Options& o;
+    const RunOptions o;
     Continuation from;
     Case& c;  ///< of `from`
-    const std::function<Continuation()>& read_again;
+    const std::function<Continuation()> read_again;
     const CaseSetup setup;
     const std::string id;  ///< of the case and its files; see identity()
     const long interval, steps;
@@ -527,7 +572,9 @@ private:
     ChangeHistory history;
     long rows = 0;                    ///< of run.csv
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
-    long resumed_at = 0;
+    bool resumed = false;
+    long resumed_at = 0, restored_step = -1;
+    std::optional<io::OutputLock> lock;
     double particle_steps = 0;        ///< since then
     std::int64_t known_warnings = 0;  ///< of the watch, which were reported
     EarlierRun earlier;
@@ -537,9 +584,16 @@ private:
 
 }  // namespace
 
-int run(const Options& options, Continuation run, const std::function<Continuation()>& read_again)
+int run(const RunOptions& options, Continuation run, const std::function<Continuation()>& read_again)
 {
     return CaseRun(options, std::move(run), read_again).execute();
+}
+
+std::unique_ptr<SteppedRun> SteppedRun::open(const RunOptions& options, Continuation run, long restore)
+{
+    auto opened = std::make_unique<CaseRun>(options, std::move(run), nullptr);
+    opened->open(restore);
+    return opened;
 }
 
 }  // namespace hilda::granular

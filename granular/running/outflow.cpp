@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// outflow.csv: the particles that have left the domain, of a case with domain.outflow or domain.lost.
 
-#include "granular/program/sink.hpp"
 #include "granular/reading/object_reader.hpp"
+#include "granular/running/sink.hpp"
 #include "io/message.hpp"
 
 namespace hilda::granular {

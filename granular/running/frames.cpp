@@ -2,7 +2,7 @@
 /// run.pvd, vtk/particles-*.vtp, vtk/boundaries-*.vtp and, of a case with contacts.network,
 /// vtk/contacts-*.vtp: the particles, the boundaries and the contacts, for ParaView.
 
-#include "granular/program/sink.hpp"
+#include "granular/running/sink.hpp"
 #include "granular/world/boundary_drawing.hpp"
 #include "granular/world/contact_output.hpp"
 #include "granular/world/output.hpp"

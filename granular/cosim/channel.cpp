@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/cosim/channel.hpp"
+
+#include <bit>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace hilda::granular {
+
+static_assert(std::endian::native == std::endian::little);
+
+Channel::Channel(int in, int out, std::string peer) : in(in), out(out), peer(std::move(peer))
+{
+    // A write to a process that has ended is an error, not a signal.
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+Channel::~Channel()
+{
+    close(in);
+    if (out != in) close(out);
+}
+
+void Channel::send(const std::string& message)
+{
+    const std::uint64_t length = message.size();
+    std::string all(sizeof length, '\0');
+    std::memcpy(all.data(), &length, sizeof length);
+    all += message;
+    for (std::size_t done = 0; done < all.size();) {
+        const ssize_t n = write(out, all.data() + done, all.size() - done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) throw ExchangeLost(peer + " has ended during an exchange: " + std::strerror(errno));
+        done += static_cast<std::size_t>(n);
+    }
+}
+
+std::string Channel::receive()
+{
+    constexpr std::uint64_t most = std::uint64_t{1} << 30;
+    std::uint64_t length = 0;
+    read(&length, sizeof length);
+    if (length > most)
+        throw ExchangeLost(peer + ": the length of a message must be at most 2^30 bytes, got " +
+                           std::to_string(length));
+    std::string message(length, '\0');
+    read(message.data(), length);
+    return message;
+}
+
+void Channel::read(void* to, std::size_t count)
+{
+    char* at = static_cast<char*>(to);
+    while (count > 0) {
+        const ssize_t n = ::read(in, at, count);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) throw ExchangeLost(peer + " cannot be read: " + std::strerror(errno));
+        if (n == 0) throw ExchangeLost(peer + " has ended during an exchange");
+        at += n, count -= static_cast<std::size_t>(n);
+    }
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/cosim/soil.hpp"
+
+#include "io/error.hpp"
+#include "io/nearest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::granular {
+
+Soil::Soil(const RunOptions& options, Continuation run_of, const std::vector<std::string>& names)
+    : options(options), given(std::move(run_of)), step(given.c.h)
+{
+    const Case& c = given.c;
+    for (const std::string& name : names) {
+        const auto fail = [&](const std::string& what) {
+            throw io::InvalidInput(options.file + ": tool '" + name + "': " + what);
+        };
+        const auto found = std::find(c.boundaries.begin(), c.boundaries.end(), name);
+        if (found == c.boundaries.end())
+            fail("no boundary of the case has this name" + io::with_nearest(name, c.boundaries));
+        const auto k = static_cast<int>(found - c.boundaries.begin());
+        const Boundary& b = c.world->all_boundaries()[static_cast<std::size_t>(k)];
+        if (b.body >= 0) fail("is a part of another boundary; name its body");
+        for (const BoundaryMotion& m : *c.motions)
+            if (m.boundary == k)
+                fail("must have no formulas of r, v, omega, F and T, because the mechanism moves it");
+        number.push_back(k);
+        all.push_back({.name = name, .mass = b.mass, .place = {b.r, b.p, b.v, b.omega}});
+    }
+    if (c.world->scheme() == Scheme::velocity_verlet)
+        throw io::InvalidInput(options.file +
+                               ": a co-simulation needs an integrator with one evaluation of the "
+                               "loads at the beginning of a step, got velocity-verlet");
+}
+
+void Soil::open(const std::vector<ToolBody>& bodies, long steps)
+{
+    body = bodies;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+        Boundary& b = given.c.world->boundary(number[k]);
+        b.mass = body[k].mass;  // part of the damping of the contacts
+        b.free.fill(false);
+        b.F = b.T = {0, 0, 0};
+    }
+    run = SteppedRun::open(options, std::move(given), options.resume ? steps : -1);
+}
+
+void Soil::place(const std::vector<ToolMotion>& motions) const
+{
+    for (std::size_t k = 0; k < number.size(); ++k) {
+        const ToolMotion& m = motions[k];
+        world().set_place(number[k], m.r, m.p);
+        Boundary& b = world().boundary(number[k]);
+        b.v = m.v, b.omega = m.omega;
+    }
+}
+
+Wrench Soil::about_centre(std::size_t k, const Wrench& load, const EulerParameters<double>& p) const
+{
+    return {load.F, load.T - rotated(p, body[k].centre).cross(load.F)};
+}
+
+std::vector<ToolImpulse> Soil::loads(const std::vector<ToolMotion>& motions)
+{
+    place(motions);
+    const World::Totals totals = world().totals();
+    std::vector<ToolImpulse> to;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+        const Wrench w =
+            about_centre(k, totals.on_boundary[static_cast<std::size_t>(number[k])], motions[k].p);
+        to.push_back({.P = w.F, .L = w.T});
+    }
+    return to;
+}
+
+std::vector<ToolImpulse> Soil::advance(const std::vector<ToolMotion>& motions, long steps)
+{
+    place(motions);
+    std::vector<ToolImpulse> to(number.size());
+    std::vector<EulerParameters<double>> p(number.size());
+    const double h = step;
+    for (long j = 0; j < steps; ++j) {
+        for (std::size_t k = 0; k < number.size(); ++k) p[k] = world().boundary(number[k]).p;
+        run->step();
+        for (std::size_t k = 0; k < number.size(); ++k) {
+            const Wrench load = world().tool_load(number[k]), w = about_centre(k, load, p[k]);
+            to[k].P_last = h * w.F, to[k].L_last = h * w.T;
+            to[k].P += to[k].P_last, to[k].L += to[k].L_last;
+            to[k].work += h * (load.F.dot(motions[k].v) + load.T.dot(motions[k].omega));
+        }
+    }
+    return to;
+}
+
+/// Σ 3/2 F_n/δ over the contacts of the tool: the stiffness of the Hertz law, and 3/2 of that of linear
+/// springs
+std::vector<double> Soil::stiffness()
+{
+    std::vector<double> sum(number.size(), 0);
+    for (const ContactRecord& c : world().contacts()) {
+        if (!c.boundary || !(c.delta > 0)) continue;
+        const Boundary& b = world().all_boundaries()[c.j];
+        const int body_of = b.body >= 0 ? b.body : static_cast<int>(c.j);
+        for (std::size_t k = 0; k < number.size(); ++k)
+            if (number[k] == body_of) sum[k] += 1.5 * std::abs(c.F.dot(c.n)) / c.delta;
+    }
+    return sum;
+}
+
+}  // namespace hilda::granular

@@ -60,6 +60,11 @@ March::March(State x, Integrator& integrator, double h, long n, int iterations)
       t_0(n == 0 ? this->x.t : this->x.t - time(n)), n(n), iterations(iterations)
 {}
 
+void March::set_internal_states(std::size_t first, std::span<const double> values)
+{
+    std::copy(values.begin(), values.end(), x.internal_state.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 // A sum of h would drift. If 1/h is an integer, node/(1/h) is the double nearest to a decimal such as 0.009;
 // the product node · h is not.
 double March::time(long node) const

@@ -6,6 +6,7 @@
 #include "lie/check.hpp"
 #include "lie/state.hpp"
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,9 @@ public:
     void finish(std::span<Observer* const> observers);
 
     const State& node() const { return x; }
+    /// Sets internal states of the node, from index `first` on, for loads that are computed outside of the
+    /// system and constant in a step.
+    void set_internal_states(std::size_t first, std::span<const double> values);
     long number() const { return n; }
     int iterations_of_last_step() const { return iterations; }
 

@@ -2,6 +2,7 @@
 #include "studies/program/command_line.hpp"
 
 #include "io/error.hpp"
+#include "studies/cosim/run_cosim.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/columns_help.hpp"
 #include "studies/program/command_options.hpp"
@@ -53,6 +54,7 @@ public:
             "4 numerical failure, 5 input/output, 6 --expect or --check failed, 7 not available,\n"
             "129/130/143 interrupted.");
         add_run();
+        add_cosim();
         add_kinematics();
         add_check();
         add_models();
@@ -107,6 +109,14 @@ private:
     {
         run.options.command_line = command_line_text;
         add_run_options(*add("run", "simulate a model", [this] { return run_model(run_options(run)); }), run);
+    }
+
+    void add_cosim()
+    {
+        cosim.run.command_line = command_line_text;
+        add_cosim_options(*add("cosim", "simulate a mechanism and grains that act on each other",
+                               [this] { return run_cosim(cosim); }),
+                          cosim);
     }
 
     void add_kinematics()
@@ -283,6 +293,7 @@ private:
     std::vector<std::pair<CLI::App*, std::function<int()>>> actions;
 
     RunArguments run;
+    CosimOptions cosim;
     KinematicsOptions kinematics;
     CheckOptions check;
     StudyOptions study;

@@ -86,6 +86,40 @@ RunOptions run_options(const RunArguments& arguments)
     return o;
 }
 
+void add_cosim_options(CLI::App& c, CosimOptions& to)
+{
+    RunOptions& o = to.run;
+    c.add_option("FILE", to.file, "path of a co-simulation file")->required()->type_name("");
+    value(c, "--end", "T", "end time [s]; default: that of the file", assign(o.end, positive_number));
+    value(c, "--interval", "DT", "time between output rows of the mechanism [s]; default: that of the file",
+          assign(o.interval, nonnegative_number));
+    add_set(c, "the co-simulation file", o.set);
+    add_fix_initial(c, "", o.fix_initial);
+    add_output(c, "--force or --resume", "out/NAME", o.output);
+    c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
+    c.add_flag(
+        "--resume", o.resume,
+        "continue the run in the output directory from its last checkpoint; a complete run continues to a "
+        "later --end");
+    c.add_flag("--strict", o.strict, "end with exit code 4 at the first warning about the solution");
+    value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
+          assign(o.checkpoint, nonnegative_number));
+    value(
+        c, "--transport", "NAME",
+        "in-process: the grains are computed by this program; pipe: by a process of hilda-granular; default: "
+        "in-process",
+        [&to](const std::string& option, const std::string& text) {
+            if (text != "in-process" && text != "pipe")
+                throw io::UsageError(option + ": must be in-process or pipe, got '" + text + "'");
+            to.transport = text;
+        });
+    value(c, "--threads", "N", "threads of the grains; default: 1", assign(o.threads, positive_count));
+    io::add_sink_options<RunSetup>(c, o.outputs);
+    add_json(c, o.json);
+    c.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
+    c.add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
+}
+
 void add_kinematics_options(CLI::App& c, KinematicsOptions& o)
 {
     add_model(c, o.model);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "studies/cosim/run_cosim.hpp"
 #include "studies/program/check_model.hpp"
 #include "studies/program/kinematics.hpp"
 #include "studies/program/run_model.hpp"
@@ -25,6 +26,9 @@ struct RunArguments {
 void add_run_options(CLI::App& command, RunArguments& to);
 /// io::UsageError for options that exclude each other
 RunOptions run_options(const RunArguments& arguments);
+
+/// Adds the options of hilda cosim.
+void add_cosim_options(CLI::App& command, CosimOptions& to);
 
 void add_kinematics_options(CLI::App& command, KinematicsOptions& to);
 void add_check_options(CLI::App& command, CheckOptions& to);

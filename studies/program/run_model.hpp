@@ -13,6 +13,8 @@
 
 namespace hilda::studies {
 
+class Coupling;
+
 struct RunOptions {
     std::string model;  ///< name of a built-in model, or path of a model file
     std::vector<std::string> integrators{default_integrator};
@@ -37,6 +39,7 @@ struct RunOptions {
     int threads = 1;
     std::string command_line;          ///< recorded in summary.json
     std::vector<std::string> plugins;  ///< that are loaded, see load_plugin()
+    Coupling* coupling = nullptr;      ///< of a co-simulation
 };
 
 /// Simulates the model with each integrator, writes the results and prints a summary. Returns the exit code

@@ -12,6 +12,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "studies/running/contact_rows.hpp"
+#include "studies/running/coupling.hpp"
 #include "studies/running/diagnosis.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
@@ -91,7 +92,8 @@ RunResult SingleRun::execute()
                                              {"command_line", options.command_line},
                                              {"integrator", scheme.name},
                                              {"model", description.name},
-                                             {"model_text", text_of_model()}})},
+                                             {"model_text", text_of_model()}}),
+                       .coupling = options.coupling},
                       *integrator, watch);
     check_step(from.has_value());
     if (options.error)
@@ -113,6 +115,7 @@ RunResult SingleRun::execute()
         if (!result.message.ends_with(found.text)) add_warning(found.text);  // not the one that ended the run
     if (const std::string rank = rank_warning(*integrator); !rank.empty()) add_warning(rank);
     if (refined) result.error = refined->estimate(result.events.size());
+    if (options.coupling != nullptr) options.coupling->close(result.exit_code);
     finish(recorder);
     return std::move(result);
 }
@@ -120,8 +123,11 @@ RunResult SingleRun::execute()
 void SingleRun::read()
 {
     description = named_model(options.model, options.set, options.normal_rows);
-    result.start = dae::start(description, {.fix_initial = options.fix_initial});
     if (options.resume) load_checkpoint();
+    if (options.coupling != nullptr)
+        options.coupling->prepare(description, options.step.value_or(default_step), scheme,
+                                  from ? std::optional(from->number) : std::nullopt);
+    result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
     grid = grid_of(options, result.end, scheme.adaptive);
     if (from && !options.interval) grid.interval = from->interval;
@@ -280,6 +286,8 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
         result.resumed_at = from->number;
     }
     recorder.open(from);
+    if (options.coupling != nullptr)
+        options.coupling->begin(march, [this](const std::string& what) { add_warning(what); });
     begin = Clock::now();
     // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed
     // at any time.
@@ -329,6 +337,7 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
     Clock::time_point saved = Clock::now();
     const auto advance_once = [&] {
         try {
+            if (options.coupling != nullptr) options.coupling->before_step(march);
             march.advance(observers);
             return true;
         } catch (const lie::Interrupted&) {  // during a step; the current node is unchanged
@@ -349,6 +358,7 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         line.clear();
         if (march.number() == grid.steps) {
             if (!scheme.adaptive) final_checkpoint = checkpoint(march, recorder);
+            if (options.coupling != nullptr) options.coupling->before_finish();
             return march.finish(observers);
         }
         result.status = "interrupted";
@@ -384,6 +394,7 @@ std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) c
 
 void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
 {
+    if (options.coupling != nullptr) options.coupling->save();
     io::CheckpointFiles(directory).save(checkpoint(march, recorder));
     log(fmt::format("checkpoint at step {}", march.number()));
 }

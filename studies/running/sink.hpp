@@ -16,6 +16,7 @@ class Output;
 
 namespace hilda::studies {
 
+class Coupling;
 class RunTables;
 
 /// Cost of a step
@@ -48,6 +49,7 @@ struct RunSetup {
     std::function<void(const std::string&)> warn;
     const char* command = "run";                  ///< of hilda, for messages
     std::shared_ptr<RunTables> tables = nullptr;  ///< format of the tables; nullptr: CSV
+    Coupling* coupling = nullptr;                 ///< of a co-simulation
 };
 
 using RowsSink = io::RowsSink<RunNode>;

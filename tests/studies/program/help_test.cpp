@@ -16,8 +16,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> commands = {"run",      "check", "models", "integrators", "schema", "study",
-                                           "granular", "plot",  "info",   "new",         "help"};
+const std::vector<std::string> commands = {"run",   "cosim",    "check", "models", "integrators", "schema",
+                                           "study", "granular", "plot",  "info",   "new",         "help"};
 
 /// All help texts, by the call that prints them
 std::vector<std::pair<std::string, std::string>> help_texts(const Scratch& in)

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/cosim/grain_coupling.hpp"
+
+#include "dae/model_file.hpp"
+#include "io/error.hpp"
+#include "io/nearest.hpp"
+#include "lie/euler_parameters.hpp"
+#include "lie/schemes.hpp"
+#include "lie/trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hilda::studies {
+
+namespace {
+
+lie::Vec3 to_lie(const granular::Vec3& a) { return {a.x, a.y, a.z}; }
+granular::Vec3 to_granular(const lie::Vec3& a) { return {a[0], a[1], a[2]}; }
+
+lie::Mat3 to_lie(const granular::EulerParameters<double>& p)
+{
+    return Eigen::Quaterniond(p.e0, p.e.x, p.e.y, p.e.z).toRotationMatrix();
+}
+granular::EulerParameters<double> orientation_of(const lie::Mat3& A)
+{
+    Eigen::Quaterniond q(A);
+    q.normalize();
+    return {q.w(), {q.x(), q.y(), q.z()}};
+}
+
+Wrench6 wrench(const granular::ToolImpulse& i, double time)
+{
+    Wrench6 w;
+    w << to_lie(i.P) / time, to_lie(i.L) / time;
+    return w;
+}
+
+}  // namespace
+
+GrainCoupling::GrainCoupling(const CosimFile& file, std::unique_ptr<granular::Exchange> of)
+    : file(file), grains(std::move(of)), h(grains->h()), k(file.substeps)
+{}
+
+void GrainCoupling::prepare(dae::Description& d, double, const lie::Scheme&, std::optional<long> node)
+{
+    dae::Model& model = *d.model;
+    std::vector<std::string> names;
+    for (const dae::Body& body : model.all_bodies()) names.push_back(body.name);
+    for (const CosimPair& pair : file.pairs) {
+        const auto found = std::find(names.begin(), names.end(), pair.body);
+        if (found == names.end())
+            throw io::InvalidInput(pair.place + ": no body of " + file.model + " has the name" +
+                                   io::with_nearest(pair.body, names));
+        const int body = static_cast<int>(found - names.begin());
+        all.push_back({.name = pair.body, .body = body});
+        mass.push_back(model.all_bodies()[static_cast<size_t>(body)].m);
+    }
+    std::vector<granular::ToolBody> bodies;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const auto b = static_cast<size_t>(all[j].body);
+        frame.emplace_back(d.x.body[b].A.transpose() * to_lie(grains->tools()[j].place.p));
+        check_tool(j, d);
+        bodies.push_back({mass[j], to_granular(lie::Vec3(-(frame[j].transpose() * file.pairs[j].r)))});
+    }
+    grains->open(bodies, steps_before(node.value_or(0)));
+    if (!node) start_loads.resize(all.size());
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        auto coupled =
+            std::make_unique<CoupledWrench>(all[j].body, "grains on " + all[j].name,
+                                            [this, j, resumed = node.has_value()](const dae::State& x) {
+                                                if (resumed) return Wrench6(Wrench6::Zero());
+                                                start_loads = loads(x);
+                                                return start_loads[j];
+                                            });
+        force.push_back(coupled.get());
+        model.load(std::move(coupled));
+    }
+}
+
+/// Throws io::InvalidInput if the boundary of a tool is not at the place of its body, or has another mass.
+void GrainCoupling::check_tool(std::size_t j, const dae::Description& d) const
+{
+    const granular::Tool& tool = grains->tools()[j];
+    const lie::Motion& body = d.x.body[static_cast<size_t>(all[j].body)];
+    const lie::Vec3 at = to_lie(tool.place.r), expected = body.r + body.A * file.pairs[j].r;
+    const double size = 1e-3 * std::max(at.norm(), expected.norm()) + 1e-6;
+    if (!((at - expected).norm() <= size))
+        throw io::InvalidInput(fmt::format(
+            "{}: boundary '{}' is at ({:.9g}, {:.9g}, {:.9g}) m in the case, but body '{}' starts with it at "
+            "({:.9g}, {:.9g}, {:.9g}) m; r of the pair is the place of the boundary relative to the centre "
+            "of mass",
+            file.pairs[j].place, tool.name, at[0], at[1], at[2], all[j].name, expected[0], expected[1],
+            expected[2]));
+    if (tool.mass > 0 && !(std::abs(tool.mass - mass[j]) <= 1e-9 * mass[j]))
+        throw io::InvalidInput(
+            fmt::format("{}: boundary '{}' has the mass {:.9g} kg, body '{}' has {:.9g} kg",
+                        file.pairs[j].place, tool.name, tool.mass, all[j].name, mass[j]));
+}
+
+/// Velocities (ṙ, ω̄) of a body half a step before the node
+Vec6 GrainCoupling::velocity(const lie::State& x, int body) const
+{
+    if (x.history.size() >= 6 * (body + 1)) return x.history.segment<6>(6 * body);
+    const lie::Motion& b = x.body[static_cast<size_t>(body)];
+    Vec6 v;
+    v << b.rdot - 0.5 * H() * b.rddot, b.omega_bar - 0.5 * H() * b.omegadot_bar;
+    return v;
+}
+
+/// Places and velocities of the tools a time after the node, with the velocities half a step before it
+std::vector<granular::ToolMotion> GrainCoupling::motions(const lie::State& x, double time) const
+{
+    std::vector<granular::ToolMotion> to;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const lie::Motion& b = x.body[static_cast<size_t>(all[j].body)];
+        const Vec6 v = velocity(x, all[j].body);
+        const lie::Mat3 A = b.A * lie::exp(lie::Vec3(time * v.tail<3>()));
+        const lie::Vec3 d = A * file.pairs[j].r, omega = A * v.tail<3>();
+        to.push_back({.r = to_granular(b.r + time * v.head<3>() + d),
+                      .p = orientation_of(A * frame[j]),
+                      .v = to_granular(v.head<3>() + omega.cross(d)),
+                      .omega = to_granular(omega)});
+    }
+    return to;
+}
+
+std::vector<Wrench6> GrainCoupling::loads(const lie::State& x)
+{
+    std::vector<Wrench6> to;
+    for (const granular::ToolImpulse& i : grains->loads(motions(x, 0))) to.push_back(wrench(i, 1));
+    return to;
+}
+
+void GrainCoupling::begin(const lie::March& march, const std::function<void(const std::string&)>& warn)
+{
+    for (CoupledWrench* f : force) f->end_start();
+    const std::vector<double> stiffness = grains->stiffness();
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const double limit = stiffness[j] > 0 ? 2 * std::sqrt(mass[j] / stiffness[j]) : 2 * H();
+        if (H() > limit)
+            warn(fmt::format(
+                "the step {:.4g} s of the mechanism is above {:.4g} s, the stability limit of body "
+                "'{}' on the contacts of '{}' with {:.3g} N/m at t = {:.6g} s",
+                H(), limit, all[j].name, grains->tools()[j].name, stiffness[j], march.node().t));
+    }
+}
+
+void GrainCoupling::before_step(lie::March& march)
+{
+    const long n = march.number(), before = n == 0 ? 0 : (k - 1) / 2, steps = n == 0 ? k / 2 + 1 : k;
+    const std::vector<granular::ToolImpulse> impulses =
+        grains->advance(motions(march.node(), -static_cast<double>(before) * h), steps);
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const auto first = static_cast<size_t>(force[j]->first_internal_state);
+        const granular::ToolImpulse& i = impulses[j];
+        const Wrench6 total = wrench(i, 1),
+                      shared = (k % 2 == 0 ? 0.5 : 0.) * wrench({.P = i.P_last, .L = i.L_last}, 1),
+                      earlier = Eigen::Map<const Wrench6>(march.node().internal_state.data() + first + 6);
+        Eigen::Matrix<double, 12, 1> now;
+        now << (earlier + total - shared) / H(), shared;
+        // The start has removed half a step of its loads from the momenta. The grains have no half step.
+        if (n == 0) now.head<6>() += (0.5 * H() - 0.5 * h) / H() * start_loads[j];
+        march.set_internal_states(first, {now.data(), 12});
+        CoupledTool& tool = all[j];
+        const Wrench6 impulse = H() * now.head<6>();
+        tool.P = impulse.head<3>(), tool.L = impulse.tail<3>(), tool.work = i.work;
+        tool.F = now.head<3>(), tool.T = now.segment<3>(3);
+    }
+}
+
+void GrainCoupling::before_finish()
+{
+    for (CoupledTool& tool : all) tool.P.setZero(), tool.L.setZero(), tool.work = 0;
+}
+
+void GrainCoupling::close(int code) { grains->close(code); }
+
+}  // namespace hilda::studies

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The coupling of a mechanism with grains, see granular/cosim/exchange.hpp.
+
+#pragma once
+
+#include "granular/cosim/exchange.hpp"
+#include "studies/cosim/cosim_file.hpp"
+#include "studies/cosim/coupled_wrench.hpp"
+#include "studies/running/coupling.hpp"
+
+#include <memory>
+
+namespace hilda::studies {
+
+class GrainCoupling final : public Coupling {
+public:
+    GrainCoupling(const CosimFile& file, std::unique_ptr<granular::Exchange> grains);
+
+    /// Step of the mechanism [s]
+    double H() const { return h * static_cast<double>(k); }
+    const std::vector<CoupledTool>& tools() const override { return all; }
+
+    void prepare(dae::Description& description, double H, const lie::Scheme& scheme,
+                 std::optional<long> node) override;
+    void begin(const lie::March& march, const std::function<void(const std::string&)>& warn) override;
+    void before_step(lie::March& march) override;
+    void before_finish() override;
+    void save() override { grains->save(); }
+    void close(int code) override;
+
+private:
+    /// Number of steps of the grains before the exchange at node n
+    long steps_before(long n) const { return n == 0 ? 0 : k / 2 + 1 + (n - 1) * k; }
+    std::vector<granular::ToolMotion> motions(const lie::State& x, double time) const;
+    Vec6 velocity(const lie::State& x, int body) const;
+    std::vector<Wrench6> loads(const lie::State& x);
+    void check_tool(std::size_t number, const dae::Description& d) const;
+
+    const CosimFile& file;
+    std::unique_ptr<granular::Exchange> grains;
+    const double h;  ///< of the grains [s]
+    const long k;    ///< substeps
+    std::vector<CoupledTool> all;
+    std::vector<CoupledWrench*> force;
+    std::vector<lie::Mat3> frame;      ///< rotation from the frame of Boundary::p to that of the body
+    std::vector<Wrench6> start_loads;  ///< of a new run
+    std::vector<double> mass;          ///< of the bodies [kg]
+};
+
+}  // namespace hilda::studies

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The command hilda cosim: a mechanism and grains that advance together.
+
+#pragma once
+
+#include "studies/program/run_model.hpp"
+
+namespace hilda::studies {
+
+struct CosimOptions {
+    std::string file;
+    std::string transport = "in-process";  ///< or pipe: the grains are a process of hilda-granular
+    RunOptions run;  ///< output, checkpoints and switches; the model and its step are those of the file
+};
+
+/// Simulates both sides, writes the results of the mechanism to the output directory and those of the grains
+/// to its folder grains/, and prints a summary. Returns the exit code.
+int run_cosim(const CosimOptions& options);
+
+}  // namespace hilda::studies

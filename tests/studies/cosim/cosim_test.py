@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""hilda cosim: a ball in comparison with a tool of hilda-granular, momentum and energy, the order in the step of the mechanism,
+one result for interruptions and threads, and errors.
+
+    cosim_test.py HILDA HILDA-GRANULAR
+"""
+import copy
+import csv
+import json
+import math
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+M, RADIUS = 3e-3, 6e-3
+J = 0.4 * M * RADIUS ** 2
+CUP = {"hilda_case": 1, "name": "cup", "domain": {"low": [-0.02, -0.02, -0.01], "high": [0.02, 0.02, 0.1]},
+       "step": 5e-6, "end": 1, "interval": 5e-4, "frame_interval": 1,
+       "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}],
+       "laws": [{"between": ["glass", "glass"], "restitution": 0.6, "mu": 0.4, "tangential": {"law": "mindlin"}}],
+       "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "material": "glass"},
+                      {"name": "wall", "type": "cylinder", "axis": [0, 0, 1], "radius": 0.0125, "inside": True, "material": "glass"},
+                      {"name": "ball", "type": "sphere", "radius": RADIUS, "r": [7e-4, 3e-4, 0.0225], "material": "glass"}],
+       "fill": [{"type": "lattice", "low": [-0.0085, -0.0085, 0], "high": [0.0085, 0.0085, 0.015], "radius": 1e-3, "spacing": 1.02,
+                 "jitter": 1, "random_v": 0.05, "material": "glass"}]}
+MODEL = {"hilda_model": 1, "name": "ball", "gravity": [0, 0, -9.81], "end": 1,
+         "bodies": [{"name": "ball", "mass": M, "inertia": [J, J, J], "r": [7e-4, 3e-4, 0.0225], "r_dot": [0.05, 0, -0.8],
+                     "omega": [3, -4, 10]}]}
+COSIM = {"hilda_cosim": 1, "model": "model.json", "case": "case.json", "end": 0.02, "interval": 5e-4, "pairs": [{"body": "ball"}]}
+
+
+# A ball that rocks on three heavy grains with linear springs without damping: a smooth motion without end
+SEAT = {"hilda_case": 1, "name": "seat", "domain": {"low": [-0.02] * 3, "high": [0.02, 0.02, 0.04]}, "step": 2e-6, "end": 1,
+        "interval": 1e-3, "frame_interval": 1, "gravity": [0, 0, 0],
+        "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}, {"name": "heavy", "density": 1e9, "E": 7e7, "nu": 0.24}],
+        "laws": [{"between": ["glass", "heavy"], "mu": 0, "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}},
+                 {"between": ["heavy", "heavy"], "mu": 0, "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}}],
+        "boundaries": [{"name": "ball", "type": "sphere", "radius": RADIUS, "r": [0, 0, 0.0071], "material": "glass"}],
+        "particles": [{"r": [4e-3 * math.cos(a), 4e-3 * math.sin(a), 1.1e-3], "radius": 1.2e-3, "material": "heavy"}
+                      for a in (0, 2.1, 4.2)]}
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"failed: {what}")
+
+
+class Runs:
+    def __init__(self, hilda, granular, folder):
+        self.hilda, self.granular, self.folder = hilda, granular, pathlib.Path(folder)
+
+    def files(self, name, cosim, case=None, model=None):
+        """Writes the three files of a co-simulation to a folder of its own"""
+        path = self.folder / name
+        path.mkdir(exist_ok=True)
+        for file, content in (("cosim.json", cosim), ("case.json", case or CUP), ("model.json", model or MODEL)):
+            (path / file).write_text(json.dumps(content))
+        return path
+
+    def start(self, name, *arguments):
+        return subprocess.Popen([self.hilda, "cosim", f"{name}/cosim.json", *arguments], cwd=self.folder, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def finish(self, name, *arguments, code=0):
+        process = self.start(name, *arguments)
+        out, err = process.communicate()
+        expect(process.returncode == code, f"{name} {arguments}: ended with {process.returncode}, not {code}: {out} {err}")
+        return out + err
+
+    def refused(self, name, code, message):
+        process = self.start(name, "--output", f"{name}/out", "--quiet")
+        _, err = process.communicate()
+        expect(process.returncode == code and len(err.strip().split("\n")) == 1 and re.search(message, err),
+               f"{name}: {code} with {message}, got {process.returncode} with {err}")
+
+    def table(self, file):
+        with open(self.folder / file, encoding="utf-8") as text:
+            return [{key: float(value) for key, value in row.items() if value not in ("", None) and re.match(r"^[-+.\d]|nan|inf", value)}
+                    for row in csv.DictReader(line for line in text if not line.startswith("#"))]
+
+
+def as_tool(case, model):
+    """The case with the ball as a free tool. Its velocity is that half a step before the start, where nothing touches it."""
+    case = copy.deepcopy(case)
+    ball = next(b for b in case["boundaries"] if b["name"] == "ball")
+    body = model["bodies"][0]
+    v = [body["r_dot"][k] - 0.5 * case["step"] * model["gravity"][k] for k in range(3)]
+    ball.update(mass=M, inertia=J, v=v, omega=body["omega"], free=[True] * 6)
+    if "gravity" in case:  # the grains have none
+        ball["F"] = [M * g for g in model["gravity"]]
+    return case
+
+
+def struck():
+    """The model of a ball on the seat"""
+    model = copy.deepcopy(MODEL)
+    model["bodies"][0].update(r=[0, 0, 0.0071], r_dot=[0.02, 0.01, 0], omega=[0, 0, 0])
+    return model
+
+
+def ball_is_a_tool(runs):
+    """With one substep the body moves as a tool that hilda-granular integrates, and the grains have the same energy"""
+    largest = 0
+    # In the cup the motion is chaotic: rounding errors grow to 1e-9 m within 9 ms of impacts.
+    for name, case, model, end in ("cup", CUP, MODEL, 0.006), ("seat", SEAT, struck(), 0.05):
+        folder = runs.files(name, dict(COSIM, substeps=1, end=end), case, model)
+        (folder / "tool.json").write_text(json.dumps(as_tool(case, model)))
+        process = subprocess.run([runs.granular, f"{name}/tool.json", "--end", str(end), "--output", f"{name}/tool", "--quiet",
+                                  "--threads", "1", "--force"], cwd=runs.folder, check=False)
+        expect(process.returncode == 0, "the tool")
+        runs.finish(name, "--output", f"{name}/out")
+        tool, grains = runs.table(f"{name}/tool/run.csv"), runs.table(f"{name}/out/grains/run.csv")
+        body = {round(row["t"], 9): row for row in runs.table(f"{name}/out/tools.csv")}
+        for row in tool[:-1]:
+            other = body[round(row["t"], 9)]
+            for axis in "xyz":
+                largest = max(largest, abs(other[f"ball.{axis}"] - row[f"ball_{axis}"]))
+        expect(largest < 1e-9, f"{name}: the ball differs from a tool by {largest} m")
+        expect(max(abs(row["ball.Fz"]) for row in body.values()) > M * 9.81, f"{name}: there are contacts")
+        energy = max(row["kinetic_energy"] for row in tool)
+        for one, two in zip(tool[:-1], grains):
+            expect(abs(one["kinetic_energy"] - two["kinetic_energy"]) <= 1e-6 * energy, f"energy of the grains at {one['t']}: {one} {two}")
+    return largest
+
+
+def momentum(runs):
+    """A ball hits grains in free space: the momentum of both is constant to rounding for any number of substeps"""
+    free = copy.deepcopy(CUP)
+    free.update(gravity=[0, 0, 0], boundaries=[free["boundaries"][2]], domain={"low": [-0.2] * 3, "high": [0.2, 0.2, 0.2]},
+                fill=[dict(free["fill"][0], low=[-0.0085, -0.0085, 0.013], high=[0.0085, 0.0085, 0.0155])])
+    model = copy.deepcopy(MODEL)
+    model["gravity"] = [0, 0, 0]
+    for k in (1, 2, 3, 8):
+        runs.files(f"free{k}", dict(COSIM, substeps=k, end=0.06), free, model)
+        runs.finish(f"free{k}", "--output", f"free{k}/out")
+        grains, tools = runs.table(f"free{k}/out/grains/run.csv"), runs.table(f"free{k}/out/tools.csv")
+        body = runs.table(f"free{k}/out/trajectory.csv")
+        # at the end they are apart, and the velocity of the body is constant
+        expect(all(row["ball.Fz"] == 0 for row in tools[-12:]) and max(abs(row["ball.Fz"]) for row in tools) > 0.1, "they have met and are apart")
+        first, last = body[0], body[-1]
+        scale = M * 0.8
+        for axis in "xyz":
+            name = next(key for key in body[0] if re.fullmatch(rf"ball[._]?(r_?dot_?{axis}|v{axis}|{axis}_?dot)", key))
+            change = M * (last[name] - first[name])
+            before, after = grains[0][f"momentum_{axis}"], grains[-1][f"momentum_{axis}"]
+            expect(abs(change + after - before) < 3e-7 * scale, f"k = {k}: the momentum along {axis} changes by {change + after - before}")
+
+
+def orders(runs):
+    """Position of the ball on the seat and mismatch of the energies over the step of the mechanism"""
+    ends, errors = [], []
+    steps = (1, 10, 20, 40)
+    for k in steps:
+        runs.files(f"seat{k}", dict(COSIM, substeps=k, end=0.02, interval=4e-3), SEAT, struck())
+        runs.finish(f"seat{k}", "--output", f"seat{k}/out")
+        rows = runs.table(f"seat{k}/out/tools.csv")
+        ends.append([rows[-1][f"ball.{axis}"] for axis in "xyz"])
+        errors.append(abs(rows[-1]["ball.energy_error"]))
+        expect(max(abs(row["ball.Fz"]) for row in rows) > 2 * M * 9.81 / 3, "the ball is struck")
+    distance = [math.dist(end, ends[0]) for end in ends[1:]]
+    order = [math.log2(b / a) for a, b in zip(distance, distance[1:])]
+    mismatch = [math.log2(b / a) for a, b in zip(errors[1:], errors[2:])]
+    print(f"order of the position {order}, of the energy mismatch {mismatch}; {errors}")
+    expect(all(o > 0.9 for o in order), f"order of the position: {order}, {distance}")
+    expect(all(o > 0.9 for o in mismatch), f"order of the energy mismatch: {mismatch}, {errors}")
+
+
+def content(runs, output):
+    out = runs.folder / output
+    files = [file for file in sorted(out.rglob("*")) if file.suffix in (".csv", ".vtp", ".pvd") or file.name == "checkpoint.end"]
+    return {str(file.relative_to(out)): file.read_bytes() for file in files if file.parent.name == "grains" or file.suffix == ".csv"}
+
+
+def one_result(runs):
+    """Interruptions and kills, and a later end"""
+    runs.files("cut", dict(COSIM, substeps=4, end=0.03))
+    runs.finish("cut", "--output", "cut/whole")
+    whole = content(runs, "cut/whole")
+    expect("tools.csv" in whole and "grains/run.csv" in whole and "trajectory.csv" in whole, f"{list(whole)}")
+    runs.finish("cut", "--output", "cut/pipe", "--transport", "pipe", "--threads", "2")
+    pipe = content(runs, "cut/pipe")
+    expect(pipe == whole, f"the grains in a process of their own: {[name for name in whole if pipe.get(name) != whole[name]]} differ")
+    for which, transport in (signal.SIGINT, "in-process"), (signal.SIGKILL, "in-process"), (signal.SIGINT, "pipe"), (signal.SIGKILL, "pipe"):
+        parts = 0
+        while True:
+            process = runs.start("cut", "--output", "cut/part", "--resume", "--checkpoint", "0.02", "--quiet", "--transport", transport)
+            file, before, written = runs.folder / "cut/part/checkpoint", None, 0
+            while process.poll() is None and written < 3 + parts:
+                time.sleep(1e-3)
+                try:
+                    now = file.stat().st_mtime_ns
+                except FileNotFoundError:
+                    now = None
+                written, before = written + (now not in (None, before)), now
+            if process.poll() is None:
+                process.send_signal(which)
+            _, err = process.communicate()
+            if process.returncode == 0:
+                break
+            expect(process.returncode in (130, -signal.SIGKILL), f"{process.returncode}: {err}")
+            parts += 1
+            expect(parts < 100, "the run comes to its end")
+        expect(parts > 0, "there was an interruption")
+        part = content(runs, "cut/part")
+        expect(part == whole, f"{parts} interruptions by {which}, {transport}: {[name for name in whole if part.get(name) != whole[name]]} differ")
+        subprocess.run(["rm", "-r", str(runs.folder / "cut/part")], check=True)
+    runs.finish("cut", "--output", "cut/half", "--end", "0.012")
+    runs.finish("cut", "--output", "cut/half", "--resume", "--end", "0.03")
+    half = content(runs, "cut/half")
+    expect(half == whole, f"a later end: {[name for name in whole if half.get(name) != whole[name]]} differ")
+
+
+def errors(runs):
+    """Names, places, masses and steps that do not fit"""
+    def cosim(name, message, code=3, case=None, model=None, **changes):
+        runs.files(name, dict(COSIM, **changes), case, model)
+        runs.refused(name, code, message)
+
+    cosim("no-body", r"cosim.json:1:\d+ \(/pairs/0\): no body of .*model.json has the name 'bal'; did you mean 'ball'\?", pairs=[{"body": "bal", "boundary": "ball"}])
+    cosim("no-boundary", r"tool 'bal': no boundary of the case has this name 'bal'; did you mean 'ball'\?",
+          pairs=[{"body": "ball", "boundary": "bal"}])
+    cosim("no-pairs", r"\(/pairs\): pairs must list at least one body and boundary, got none", pairs=[])
+    cosim("twice", r"\(/pairs/1\): two pairs have the same body or boundary", pairs=[{"body": "ball"}, {"body": "ball", "boundary": "wall"}])
+    cosim("substeps", r"\(/substeps\): substeps must be positive, got 0", substeps=0)
+    cosim("key", r"unknown key \"substep\"; did you mean 'substeps'\?", substep=2)
+
+    other = copy.deepcopy(CUP)
+    other["boundaries"][2]["r"] = [0, 0, 0.03]
+    cosim("place", r"\(/pairs/0\): boundary 'ball' is at \(0, 0, 0.03\) m in the case, but body 'ball' starts with it at \(0.0007, 0.0003, 0.0225\) m",
+          case=other)
+    other = copy.deepcopy(CUP)
+    other["boundaries"][2].update(mass=0.5, free=[True] * 3)
+    cosim("mass", r"\(/pairs/0\): boundary 'ball' has the mass 0.5 kg, body 'ball' has 0.003 kg", case=other)
+    runs.files("unknown", dict(COSIM, case="other.json"))
+    for transport in "in-process", "pipe":
+        process = runs.start("unknown", "--output", "unknown/out", "--quiet", "--transport", transport)
+        _, err = process.communicate()
+        expect(process.returncode in (3, 4, 5) and "unknown/other.json" in err, f"a missing case: {process.returncode} {err}")
+        expect(not (runs.folder / "unknown/out").exists(), "no file is written before an error")
+    other = copy.deepcopy(CUP)
+    other["boundaries"][2]["v"] = ["t", 0, 0]
+    cosim("motion", r"tool 'ball': must have no formulas", case=other)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        runs = Runs(sys.argv[1], sys.argv[2], folder)
+        errors(runs)
+        difference = ball_is_a_tool(runs)
+        momentum(runs)
+        orders(runs)
+        one_result(runs)
+    print(f"co-simulation: the ball differs from a tool by {difference:.2g} m; momentum, orders, one result, errors")
+
+
+if __name__ == "__main__":
+    main()

@@ -58,16 +58,16 @@ public:
 
     virtual double h() const = 0;                        ///< step of the grains [s]
     virtual const std::vector<Tool>& tools() const = 0;  ///< in the order in which they were named
-    virtual long steps() const = 0;                      ///< of the grains so far
 
     /// Begins the run of the grains, or restores the checkpoint with this number of steps if it is resumed.
     /// No file is written before. To be called once, before the functions below.
     virtual void open(const std::vector<ToolBody>& bodies, long steps) = 0;
-    /// Loads on the tools at the present instant, in place of impulses [N, N m]
+    /// Loads on the tools at these places at the present instant, in place of impulses [N, N m]
     virtual std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) = 0;
     /// Moves the tools from these places with these velocities and computes `number` steps. The velocities
-    /// are constant in these steps.
-    virtual std::vector<ToolImpulse> advance(const std::vector<ToolMotion>& motions, long number) = 0;
+    /// are constant in these steps. The impulses are written to `to`.
+    virtual void advance(const std::vector<ToolMotion>& motions, long number,
+                         std::vector<ToolImpulse>& to) = 0;
     /// Upper bound of the present stiffness of the contacts of each tool [N/m]
     virtual std::vector<double> stiffness() = 0;
     /// Writes a checkpoint of the grains.

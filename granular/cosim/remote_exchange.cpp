@@ -41,6 +41,15 @@ std::string written(const F& f)
 
 const char* const message_name = "message of an exchange";
 
+template <class T>
+std::vector<T> read_list(const std::string& bytes)
+{
+    io::Archive a(bytes, message_name);
+    std::vector<T> list;
+    a.list(list);
+    return list;
+}
+
 }  // namespace
 
 RemoteExchange::RemoteExchange(std::unique_ptr<Channel> of, const std::vector<std::string>& names)
@@ -85,46 +94,29 @@ void RemoteExchange::open(const std::vector<ToolBody>& bodies, long steps)
     std::vector<ToolBody> list = bodies;
     auto kind = Request::open;
     std::int64_t from = steps;
-    const std::string reply =
-        call(written([&](io::Archive& a) { a.value(kind), a.list(list), a.value(from); }));
-    io::Archive a(reply, message_name);
-    a.value(from);
-    number = from;
+    call(written([&](io::Archive& a) { a.value(kind), a.list(list), a.value(from); }));
 }
 
 std::vector<ToolImpulse> RemoteExchange::loads(const std::vector<ToolMotion>& motions)
 {
     std::vector<ToolMotion> list = motions;
     auto kind = Request::loads;
-    const std::string reply = call(written([&](io::Archive& a) { a.value(kind), a.list(list); }));
-    io::Archive a(reply, message_name);
-    std::vector<ToolImpulse> to;
-    a.list(to);
-    return to;
+    return read_list<ToolImpulse>(call(written([&](io::Archive& a) { a.value(kind), a.list(list); })));
 }
 
-std::vector<ToolImpulse> RemoteExchange::advance(const std::vector<ToolMotion>& motions, long steps)
+void RemoteExchange::advance(const std::vector<ToolMotion>& motions, long steps, std::vector<ToolImpulse>& to)
 {
     std::vector<ToolMotion> list = motions;
     auto kind = Request::advance;
     std::int64_t count = steps;
-    const std::string reply =
-        call(written([&](io::Archive& a) { a.value(kind), a.list(list), a.value(count); }));
-    io::Archive a(reply, message_name);
-    std::vector<ToolImpulse> to;
-    a.list(to);
-    number += steps;
-    return to;
+    to = read_list<ToolImpulse>(
+        call(written([&](io::Archive& a) { a.value(kind), a.list(list), a.value(count); })));
 }
 
 std::vector<double> RemoteExchange::stiffness()
 {
     auto kind = Request::stiffness;
-    const std::string reply = call(written([&](io::Archive& a) { a.value(kind); }));
-    io::Archive a(reply, message_name);
-    std::vector<double> to;
-    a.list(to);
-    return to;
+    return read_list<double>(call(written([&](io::Archive& a) { a.value(kind); })));
 }
 
 void RemoteExchange::save()
@@ -149,6 +141,7 @@ void serve(Channel& channel,
     }));
     std::unique_ptr<Exchange> grains;
     std::vector<ToolMotion> motions;
+    std::vector<ToolImpulse> impulses;
     bool is_open = true;
     /// Reads a request and writes the content of the reply.
     const auto answer = [&](io::Archive& in, io::Archive& out) {
@@ -170,8 +163,6 @@ void serve(Channel& channel,
                 std::vector<ToolBody> bodies;
                 in.list(bodies), in.value(number);
                 grains->open(bodies, number);
-                number = grains->steps();
-                out.value(number);
                 break;
             }
             case Request::loads: {
@@ -181,7 +172,7 @@ void serve(Channel& channel,
             }
             case Request::advance: {
                 in.value(number);
-                std::vector<ToolImpulse> impulses = grains->advance(motions, number);
+                grains->advance(motions, number, impulses);
                 out.list(impulses);
                 break;
             }

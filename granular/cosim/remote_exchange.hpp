@@ -23,10 +23,9 @@ public:
 
     double h() const override { return step; }
     const std::vector<Tool>& tools() const override { return all; }
-    long steps() const override { return number; }
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
-    std::vector<ToolImpulse> advance(const std::vector<ToolMotion>& motions, long number) override;
+    void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
     std::vector<double> stiffness() override;
     void save() override;
     void close(int code) override;
@@ -37,7 +36,6 @@ private:
     std::unique_ptr<Channel> channel;
     double step = 0;  ///< [s]
     std::vector<Tool> all;
-    long number = 0;
 };
 
 /// Answers the messages of a RemoteExchange until it closes the run. `make` makes the grains with the

@@ -75,23 +75,22 @@ std::vector<ToolImpulse> Soil::loads(const std::vector<ToolMotion>& motions)
     return to;
 }
 
-std::vector<ToolImpulse> Soil::advance(const std::vector<ToolMotion>& motions, long steps)
+void Soil::advance(const std::vector<ToolMotion>& motions, long steps, std::vector<ToolImpulse>& to)
 {
     place(motions);
-    std::vector<ToolImpulse> to(number.size());
-    std::vector<EulerParameters<double>> p(number.size());
+    to.assign(number.size(), {});
+    frame.resize(number.size());
     const double h = step;
     for (long j = 0; j < steps; ++j) {
-        for (std::size_t k = 0; k < number.size(); ++k) p[k] = world().boundary(number[k]).p;
+        for (std::size_t k = 0; k < number.size(); ++k) frame[k] = world().boundary(number[k]).p;
         run->step();
         for (std::size_t k = 0; k < number.size(); ++k) {
-            const Wrench load = world().tool_load(number[k]), w = about_centre(k, load, p[k]);
+            const Wrench load = world().tool_load(number[k]), w = about_centre(k, load, frame[k]);
             to[k].P_last = h * w.F, to[k].L_last = h * w.T;
             to[k].P += to[k].P_last, to[k].L += to[k].L_last;
             to[k].work += h * (load.F.dot(motions[k].v) + load.T.dot(motions[k].omega));
         }
     }
-    return to;
 }
 
 /// Σ 3/2 F_n/δ over the contacts of the tool: the stiffness of the Hertz law, and 3/2 of that of linear

@@ -17,16 +17,15 @@ public:
 
     double h() const override { return step; }
     const std::vector<Tool>& tools() const override { return all; }
-    long steps() const override { return world().steps(); }
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
-    std::vector<ToolImpulse> advance(const std::vector<ToolMotion>& motions, long number) override;
+    void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
     std::vector<double> stiffness() override;
     void save() override { run->save(); }
     void close(int code) override { run->close(code); }
 
 private:
-    World& world() const { return *run->run_case().world; }
+    World& world() const { return *run->case_of_run().world; }
     void place(const std::vector<ToolMotion>& motions) const;
     /// Loads on tool k about its centre of mass, with the place that it had when they were computed
     Wrench about_centre(std::size_t k, const Wrench& load, const EulerParameters<double>& p) const;
@@ -38,6 +37,7 @@ private:
     std::vector<Tool> all;
     std::vector<int> number;  ///< of the boundary of each tool
     std::vector<ToolBody> body;
+    std::vector<EulerParameters<double>> frame;  ///< Boundary::p of each tool at the beginning of a step
 };
 
 }  // namespace hilda::granular

@@ -95,9 +95,13 @@ int exchange(RunOptions o, Continuation read)
     std::signal(SIGINT, SIG_IGN), std::signal(SIGHUP, SIG_IGN), std::signal(SIGTERM, SIG_IGN);
     o.quiet = true;
     Channel channel(STDIN_FILENO, STDOUT_FILENO, "hilda cosim");
-    serve(channel, [&](const std::vector<std::string>& names) -> std::unique_ptr<Exchange> {
-        return std::make_unique<Soil>(o, std::move(read), names);
-    });
+    try {
+        serve(channel, [&](const std::vector<std::string>& names) -> std::unique_ptr<Exchange> {
+            return std::make_unique<Soil>(o, std::move(read), names);
+        });
+    } catch (const ExchangeLost&) {  // the other program has reported its error
+        return io::exit_code::numerical_failure;
+    }
     return io::exit_code::done;
 }
 

@@ -57,7 +57,7 @@ public:
         else if (earlier.end != steps || !from.changes.empty())
             begin_other_case();
     }
-    Case& run_case() override { return c; }
+    Case& case_of_run() override { return c; }
     void step() override
     {
         stages_are_over(true);  // the last one lasts as long as the mechanism moves

@@ -24,7 +24,7 @@ public:
     static std::unique_ptr<SteppedRun> open(const RunOptions& options, Continuation run, long restore = -1);
     virtual ~SteppedRun() = default;
 
-    virtual Case& run_case() = 0;
+    virtual Case& case_of_run() = 0;
     /// Computes a step and writes the outputs of its end.
     virtual void step() = 0;
     /// Writes a checkpoint.

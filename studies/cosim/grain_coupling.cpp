@@ -5,7 +5,6 @@
 #include "io/error.hpp"
 #include "io/nearest.hpp"
 #include "lie/euler_parameters.hpp"
-#include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 
 #include <fmt/format.h>
@@ -22,13 +21,12 @@ granular::Vec3 to_granular(const lie::Vec3& a) { return {a[0], a[1], a[2]}; }
 
 lie::Mat3 to_lie(const granular::EulerParameters<double>& p)
 {
-    return Eigen::Quaterniond(p.e0, p.e.x, p.e.y, p.e.z).toRotationMatrix();
+    return lie::rotation({p.e0, p.e.x, p.e.y, p.e.z});
 }
 granular::EulerParameters<double> orientation_of(const lie::Mat3& A)
 {
-    Eigen::Quaterniond q(A);
-    q.normalize();
-    return {q.w(), {q.x(), q.y(), q.z()}};
+    const lie::Vec4 p = lie::euler_parameters(A);
+    return {p[0], {p[1], p[2], p[3]}};
 }
 
 Wrench6 wrench(const granular::ToolImpulse& i, double time)
@@ -44,7 +42,7 @@ GrainCoupling::GrainCoupling(const CosimFile& file, std::unique_ptr<granular::Ex
     : file(file), grains(std::move(of)), h(grains->h()), k(file.substeps)
 {}
 
-void GrainCoupling::prepare(dae::Description& d, double, const lie::Scheme&, std::optional<long> node)
+void GrainCoupling::prepare(dae::Description& d, std::optional<long> node)
 {
     dae::Model& model = *d.model;
     std::vector<std::string> names;
@@ -66,15 +64,11 @@ void GrainCoupling::prepare(dae::Description& d, double, const lie::Scheme&, std
         bodies.push_back({mass[j], to_granular(lie::Vec3(-(frame[j].transpose() * file.pairs[j].r)))});
     }
     grains->open(bodies, steps_before(node.value_or(0)));
-    if (!node) start_loads.resize(all.size());
+    motions.resize(all.size());
     for (std::size_t j = 0; j < all.size(); ++j) {
-        auto coupled =
-            std::make_unique<CoupledWrench>(all[j].body, "grains on " + all[j].name,
-                                            [this, j, resumed = node.has_value()](const dae::State& x) {
-                                                if (resumed) return Wrench6(Wrench6::Zero());
-                                                start_loads = loads(x);
-                                                return start_loads[j];
-                                            });
+        std::function<Wrench6(const dae::State& x)> at_start;
+        if (!node) at_start = [this, j](const dae::State& x) { return loads(x)[j]; };
+        auto coupled = std::make_unique<CoupledWrench>(all[j].body, "grains on " + all[j].name, at_start);
         force.push_back(coupled.get());
         model.load(std::move(coupled));
     }
@@ -86,8 +80,8 @@ void GrainCoupling::check_tool(std::size_t j, const dae::Description& d) const
     const granular::Tool& tool = grains->tools()[j];
     const lie::Motion& body = d.x.body[static_cast<size_t>(all[j].body)];
     const lie::Vec3 at = to_lie(tool.place.r), expected = body.r + body.A * file.pairs[j].r;
-    const double size = 1e-3 * std::max(at.norm(), expected.norm()) + 1e-6;
-    if (!((at - expected).norm() <= size))
+    const double rounding = 1e-6 * std::max(at.norm(), expected.norm());  // of decimals in the files
+    if (!((at - expected).norm() <= rounding))
         throw io::InvalidInput(fmt::format(
             "{}: boundary '{}' is at ({:.9g}, {:.9g}, {:.9g}) m in the case, but body '{}' starts with it at "
             "({:.9g}, {:.9g}, {:.9g}) m; r of the pair is the place of the boundary relative to the centre "
@@ -110,27 +104,27 @@ Vec6 GrainCoupling::velocity(const lie::State& x, int body) const
     return v;
 }
 
-/// Places and velocities of the tools a time after the node, with the velocities half a step before it
-std::vector<granular::ToolMotion> GrainCoupling::motions(const lie::State& x, double time) const
+/// Sets the places and velocities of the tools a time after the node, with the velocities half a step before
+/// it.
+void GrainCoupling::set_motions(const lie::State& x, double time)
 {
-    std::vector<granular::ToolMotion> to;
     for (std::size_t j = 0; j < all.size(); ++j) {
         const lie::Motion& b = x.body[static_cast<size_t>(all[j].body)];
         const Vec6 v = velocity(x, all[j].body);
         const lie::Mat3 A = b.A * lie::exp(lie::Vec3(time * v.tail<3>()));
         const lie::Vec3 d = A * file.pairs[j].r, omega = A * v.tail<3>();
-        to.push_back({.r = to_granular(b.r + time * v.head<3>() + d),
+        motions[j] = {.r = to_granular(b.r + time * v.head<3>() + d),
                       .p = orientation_of(A * frame[j]),
                       .v = to_granular(v.head<3>() + omega.cross(d)),
-                      .omega = to_granular(omega)});
+                      .omega = to_granular(omega)};
     }
-    return to;
 }
 
 std::vector<Wrench6> GrainCoupling::loads(const lie::State& x)
 {
     std::vector<Wrench6> to;
-    for (const granular::ToolImpulse& i : grains->loads(motions(x, 0))) to.push_back(wrench(i, 1));
+    set_motions(x, 0);
+    for (const granular::ToolImpulse& i : grains->loads(motions)) to.push_back(wrench(i, 1));
     return to;
 }
 
@@ -151,18 +145,19 @@ void GrainCoupling::begin(const lie::March& march, const std::function<void(cons
 void GrainCoupling::before_step(lie::March& march)
 {
     const long n = march.number(), before = n == 0 ? 0 : (k - 1) / 2, steps = n == 0 ? k / 2 + 1 : k;
-    const std::vector<granular::ToolImpulse> impulses =
-        grains->advance(motions(march.node(), -static_cast<double>(before) * h), steps);
+    set_motions(march.node(), -static_cast<double>(before) * h);
+    grains->advance(motions, steps, impulses);
     for (std::size_t j = 0; j < all.size(); ++j) {
         const auto first = static_cast<size_t>(force[j]->first_internal_state);
         const granular::ToolImpulse& i = impulses[j];
         const Wrench6 total = wrench(i, 1),
                       shared = (k % 2 == 0 ? 0.5 : 0.) * wrench({.P = i.P_last, .L = i.L_last}, 1),
-                      earlier = Eigen::Map<const Wrench6>(march.node().internal_state.data() + first + 6);
+                      earlier = Eigen::Map<const Wrench6>(march.node().internal_state.data() + first + 6),
+                      at_start = Eigen::Map<const Wrench6>(march.node().internal_state.data() + first);
         Eigen::Matrix<double, 12, 1> now;
         now << (earlier + total - shared) / H(), shared;
         // The start has removed half a step of its loads from the momenta. The grains have no half step.
-        if (n == 0) now.head<6>() += (0.5 * H() - 0.5 * h) / H() * start_loads[j];
+        if (n == 0) now.head<6>() += (0.5 * H() - 0.5 * h) / H() * at_start;
         march.set_internal_states(first, {now.data(), 12});
         CoupledTool& tool = all[j];
         const Wrench6 impulse = H() * now.head<6>();
@@ -176,6 +171,14 @@ void GrainCoupling::before_finish()
     for (CoupledTool& tool : all) tool.P.setZero(), tool.L.setZero(), tool.work = 0;
 }
 
-void GrainCoupling::close(int code) { grains->close(code); }
+void GrainCoupling::close(int code)
+{
+    try {
+        grains->close(code);
+    } catch (const io::NumericalFailure&) {
+        // After a failure the grains may have ended already.
+        if (code == io::exit_code::done) throw;
+    }
+}
 
 }  // namespace hilda::studies

@@ -20,8 +20,7 @@ public:
     double H() const { return h * static_cast<double>(k); }
     const std::vector<CoupledTool>& tools() const override { return all; }
 
-    void prepare(dae::Description& description, double H, const lie::Scheme& scheme,
-                 std::optional<long> node) override;
+    void prepare(dae::Description& description, std::optional<long> node) override;
     void begin(const lie::March& march, const std::function<void(const std::string&)>& warn) override;
     void before_step(lie::March& march) override;
     void before_finish() override;
@@ -31,7 +30,7 @@ public:
 private:
     /// Number of steps of the grains before the exchange at node n
     long steps_before(long n) const { return n == 0 ? 0 : k / 2 + 1 + (n - 1) * k; }
-    std::vector<granular::ToolMotion> motions(const lie::State& x, double time) const;
+    void set_motions(const lie::State& x, double time);
     Vec6 velocity(const lie::State& x, int body) const;
     std::vector<Wrench6> loads(const lie::State& x);
     void check_tool(std::size_t number, const dae::Description& d) const;
@@ -42,9 +41,10 @@ private:
     const long k;    ///< substeps
     std::vector<CoupledTool> all;
     std::vector<CoupledWrench*> force;
-    std::vector<lie::Mat3> frame;      ///< rotation from the frame of Boundary::p to that of the body
-    std::vector<Wrench6> start_loads;  ///< of a new run
-    std::vector<double> mass;          ///< of the bodies [kg]
+    std::vector<lie::Mat3> frame;  ///< rotation from the frame of Boundary::p to that of the body
+    std::vector<granular::ToolMotion> motions;    ///< for the exchange
+    std::vector<granular::ToolImpulse> impulses;  ///< of the exchange
+    std::vector<double> mass;                     ///< of the bodies [kg]
 };
 
 }  // namespace hilda::studies

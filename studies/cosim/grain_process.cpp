@@ -2,12 +2,13 @@
 #include "studies/cosim/grain_process.hpp"
 
 #include "io/error.hpp"
+#include "studies/program/granular_program.hpp"
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include <fcntl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace hilda::studies {
@@ -15,9 +16,7 @@ namespace hilda::studies {
 std::unique_ptr<granular::RemoteExchange> start_grains(const std::vector<std::string>& arguments,
                                                        const std::vector<std::string>& names)
 {
-    std::error_code error;
-    const auto here = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::string program = (here.parent_path() / "hilda-granular").string();
+    const std::string program = granular_program();
     std::vector<char*> words = {const_cast<char*>("hilda-granular")};
     for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
     words.push_back(const_cast<char*>("--exchange"));
@@ -25,7 +24,7 @@ std::unique_ptr<granular::RemoteExchange> start_grains(const std::vector<std::st
     const auto fail = [&] {
         throw io::NotAvailable("cosim: " + program + " cannot be started: " + std::strerror(errno));
     };
-    if (error || access(program.c_str(), X_OK) != 0) fail();
+    if (access(program.c_str(), X_OK) != 0) fail();
     int to_grains[2], from_grains[2];
     if (pipe2(to_grains, O_CLOEXEC) != 0 || pipe2(from_grains, O_CLOEXEC) != 0) fail();
     const pid_t child = fork();
@@ -36,8 +35,15 @@ std::unique_ptr<granular::RemoteExchange> start_grains(const std::vector<std::st
         _exit(127);
     }
     close(to_grains[0]), close(from_grains[1]);
-    return std::make_unique<granular::RemoteExchange>(
-        std::make_unique<granular::Channel>(from_grains[0], to_grains[1], "hilda-granular"), names);
+    auto channel = std::make_unique<granular::Channel>(from_grains[0], to_grains[1], "hilda-granular");
+    try {
+        return std::make_unique<granular::RemoteExchange>(std::move(channel), names);
+    } catch (const granular::ExchangeLost&) {
+        int status = 0;
+        if (waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) == 0) throw;
+        throw io::Failure(WEXITSTATUS(status),
+                          "cosim: hilda-granular has ended with this exit code; its message is above");
+    }
 }
 
 }  // namespace hilda::studies

@@ -9,7 +9,6 @@
 #include "lie/schemes.hpp"
 #include "studies/cosim/grain_coupling.hpp"
 #include "studies/cosim/grain_process.hpp"
-#include "studies/running/named_model.hpp"
 #include "studies/running/single_run.hpp"
 
 #include <omp.h>

@@ -11,15 +11,20 @@
 
 namespace hilda::studies {
 
-int start_granular(const std::vector<std::string>& arguments)
+std::string granular_program()
 {
     std::error_code error;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::string program = (here.parent_path() / "hilda-granular").string();
+    return error ? "" : (here.parent_path() / "hilda-granular").string();
+}
+
+int start_granular(const std::vector<std::string>& arguments)
+{
+    const std::string program = granular_program();
     std::vector<char*> words = {const_cast<char*>("hilda granular")};
     for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
     words.push_back(nullptr);
-    if (!error) execv(program.c_str(), words.data());
+    if (!program.empty()) execv(program.c_str(), words.data());
     throw io::NotAvailable("granular: " + program + " cannot be started: " + std::strerror(errno));
 }
 

@@ -10,6 +10,9 @@
 
 namespace hilda::studies {
 
+/// Path of hilda-granular, which must be in the directory of this program. Empty if that is not known.
+std::string granular_program();
+
 /// Replaces this process by hilda-granular, which must be in the same directory. Returns only by the
 /// exception io::NotAvailable, if the program cannot be started.
 int start_granular(const std::vector<std::string>& arguments);

@@ -15,7 +15,6 @@ struct Description;
 }
 namespace hilda::lie {
 class March;
-struct Scheme;
 }  // namespace hilda::lie
 
 namespace hilda::studies {
@@ -37,8 +36,7 @@ public:
 
     /// Adds the forces of the coupling to a model before its start. `node`: number of the node from which a
     /// resumed run continues; empty for a new run.
-    virtual void prepare(dae::Description& description, double H, const lie::Scheme& scheme,
-                         std::optional<long> node) = 0;
+    virtual void prepare(dae::Description& description, std::optional<long> node) = 0;
     /// Called once after the start or after a checkpoint has been restored, before the first step. `warn`
     /// receives warnings.
     virtual void begin(const lie::March& march, const std::function<void(const std::string&)>& warn) = 0;

@@ -125,8 +125,7 @@ void SingleRun::read()
     description = named_model(options.model, options.set, options.normal_rows);
     if (options.resume) load_checkpoint();
     if (options.coupling != nullptr)
-        options.coupling->prepare(description, options.step.value_or(default_step), scheme,
-                                  from ? std::optional(from->number) : std::nullopt);
+        options.coupling->prepare(description, from ? std::optional(from->number) : std::nullopt);
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
     grid = grid_of(options, result.end, scheme.adaptive);

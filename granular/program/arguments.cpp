@@ -66,7 +66,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         return [&to, read](const std::string& option, const std::string& text) { to = read(option, text); };
     };
     app.add_option(
-           "CASE", o.file,
+           "CASE", o.run.file,
            "case file (JSON), name of a built-in case or of a validation, cases to list the built-in cases "
            "or to write them as files, laws to list the force laws, or schema to print the JSON schema of "
            "cases")
@@ -103,17 +103,17 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     value(
         "--output", "DIR",
         "output directory, new or empty unless --force or --resume is given; default: out/NAME for NAME.json",
-        assign(o.output, io::path));
-    app.add_flag("--force", o.force,
+        assign(o.run.output, io::path));
+    app.add_flag("--force", o.run.force,
                  "overwrite an output directory that is not empty; accept a step above the stability limit");
     app.add_flag("--allow-paths", o.allow_paths,
                  "read the tables that the case names also if they are not below the folder of the case");
-    app.add_flag("--resume", o.resume,
+    app.add_flag("--resume", o.run.resume,
                  "continue the run in the output directory from its last checkpoint, also with another "
                  "gravity, motion or law (--set); a complete run continues to a later --end");
     value("--checkpoint", "S",
           "wall time between checkpoints [s]; 0: only after an interruption; default: 600",
-          assign(o.checkpoint, io::nonnegative_number));
+          assign(o.run.checkpoint, io::nonnegative_number));
     value("--threads", "N", "number of CPU threads, without influence on the results; default: 1",
           assign(o.threads, [](const std::string& option, const std::string& text) {
               return io::count_up_to(1024, option, text);
@@ -125,16 +125,16 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
               o.device = *device;
               o.device_name = text;
           });
-    io::add_sink_options<CaseSetup>(app, o.outputs);
+    io::add_sink_options<CaseSetup>(app, o.run.outputs);
     app.add_flag(
         "--exchange", o.exchanges,
         "let another program move boundaries: it sends their motions to stdin and receives the impulses "
         "of the particles from stdout (hilda cosim)");
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
-    app.add_flag("--strict", o.strict, "end with exit code 4 at a warning of the watch or of a stage");
-    app.add_flag("--json", o.json, "print the summary as JSON on stdout, and nothing else");
-    app.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
-    app.add_flag("-v,--verbose", o.verbose, "report steps, checkpoints and resumption on stderr");
+    app.add_flag("--strict", o.run.strict, "end with exit code 4 at a warning of the watch or of a stage");
+    app.add_flag("--json", o.run.json, "print the summary as JSON on stdout, and nothing else");
+    app.add_flag("--quiet", o.run.quiet, "print no result, no warnings and no progress");
+    app.add_flag("-v,--verbose", o.run.verbose, "report steps, checkpoints and resumption on stderr");
     app.allow_extras();  // refuse_extras() names the nearest option
     app.footer(
         "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 invalid case, 4 numerical failure,\n"
@@ -142,11 +142,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     try {
         app.parse(argc, argv);
         refuse_extras(app);
-        if (o.file != "cases") {
+        if (o.run.file != "cases") {
             if (!o.name.empty()) throw io::UsageError("one argument too many: '" + o.name + "'");
             if (!o.write_to.empty()) throw io::UsageError("--write: is valid after cases only");
         }
-        if (o.force && o.resume) throw io::UsageError("--force and --resume exclude each other");
+        if (o.run.force && o.run.resume) throw io::UsageError("--force and --resume exclude each other");
         if (!every.empty() && !interval.empty())
             throw io::UsageError("--every is the old name of --interval; give only one of them");
     } catch (const CLI::ParseError& e) {
@@ -166,7 +166,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     }
     if (!every.empty()) {
         interval = every;  // the origin in messages is then --interval
-        if (!o.quiet) io::warning("--every was renamed to --interval; the old name is still read");
+        if (!o.run.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
     const std::set<std::string> of_all = {"CASE",   "NAME",     "--write", "--threads", "--device",
                                           "--full", "--strict", "--quiet", "--verbose"};
@@ -179,7 +179,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         if (!given.empty())
             o.settings.push_back({std::string("/") + key + '=' + io::shortest(*io::number_in<double>(given)),
                                   std::string("--") + key + ' ' + given});
-    if (o.output.empty()) o.output = "out/" + std::filesystem::path(o.file).stem().string();
+    if (o.run.output.empty()) o.run.output = "out/" + std::filesystem::path(o.run.file).stem().string();
     o.command_line = argv[0];  // may be "hilda granular"
     if (argc > 1) o.command_line += ' ' + io::shell_quoted(argc - 1, argv + 1);
     return {};

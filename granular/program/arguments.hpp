@@ -8,7 +8,8 @@
 
 namespace hilda::granular {
 
-struct Options : RunOptions {
+struct Options {
+    RunOptions run = {};
     std::string device_name = "cpu", command_line;
     std::string name, write_to;  ///< of the command cases: a built-in case, and where it is written
     Device device = {};

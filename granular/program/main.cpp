@@ -78,11 +78,11 @@ std::string text_of_case(const std::string& word)
 /// The commands that print a text: cases, laws and schema
 void print_text(const Options& o)
 {
-    if (o.file == "cases" && (!o.name.empty() || !o.write_to.empty()))
+    if (o.run.file == "cases" && (!o.name.empty() || !o.write_to.empty()))
         write_cases(o.name, o.write_to);
-    else if (o.file == "cases")
+    else if (o.run.file == "cases")
         std::puts(list_of_cases().c_str());
-    else if (o.file == "laws")
+    else if (o.run.file == "laws")
         std::puts(list_of_laws().c_str());
     else
         std::puts(io::written(case_schema()).c_str());
@@ -108,15 +108,15 @@ int exchange(RunOptions o, Continuation read)
 int run_case(const Options& o)
 {
     Environment here{.memory = available_memory(),
-                     .lists_contacts = o.outputs.contains("--contacts"),
+                     .lists_contacts = o.run.outputs.contains("--contacts"),
                      .device = o.device,
                      .settings = o.settings,
                      .seed = o.seed};
     make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
-    if (!o.allow_paths) here.folder = folder_of(o.file);
-    const std::string text = text_of_case(o.file);
-    RunOptions options = o;
+    if (!o.allow_paths) here.folder = folder_of(o.run.file);
+    const std::string text = text_of_case(o.run.file);
+    RunOptions options = o.run;
     options.provenance = provenance(o.command_line, o.threads, o.device_name);
     const auto read = [&] { return read_run(options, text, here); };
     if (o.exchanges) return exchange(options, read());
@@ -128,14 +128,16 @@ int run_program(int argc, char** argv)
     Options o;
     if (const auto code = read_arguments(argc, argv, o)) return *code;
     omp_set_num_threads(o.threads);
-    built_in_case(o.file);
-    const Validation* const validation = find_validation(o.file);
-    const bool command = (o.file == "schema" || o.file == "laws" || o.file == "cases") && !is_file(o.file);
+    built_in_case(o.run.file);
+    const Validation* const validation = find_validation(o.run.file);
+    const bool command =
+        (o.run.file == "schema" || o.run.file == "laws" || o.run.file == "cases") && !is_file(o.run.file);
     if ((validation != nullptr || command) && !o.case_only_option.empty())
-        throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " + o.file +
-                             (command ? " is a command" : " is a validation"));
-    if (o.full && validation == nullptr && is_file(o.file))
-        throw io::UsageError("granular: --full: is valid for validations only, but " + o.file + " is a file");
+        throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " +
+                             o.run.file + (command ? " is a command" : " is a validation"));
+    if (o.full && validation == nullptr && is_file(o.run.file))
+        throw io::UsageError("granular: --full: is valid for validations only, but " + o.run.file +
+                             " is a file");
     if (command) {
         print_text(o);
         return io::exit_code::done;
@@ -144,7 +146,7 @@ int run_program(int argc, char** argv)
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();
         return validation != nullptr
-                   ? validate(*validation, {.full = o.full, .device = o.device}, o.quiet, o.strict)
+                   ? validate(*validation, {.full = o.full, .device = o.device}, o.run.quiet, o.run.strict)
                    : run_case(o);
     } catch (const DeviceError& e) {
         throw io::NotAvailable("--device " + o.device_name + ": " + e.what());

@@ -143,7 +143,7 @@ TEST_CASE("the files of a study are those that its help names", "[studies][help]
         {"granular-oblique"},
         {"evolving-friction", "--end", "0.1"}};
     for (const auto& arguments : calls) {
-        const std::string name = arguments.front();
+        const std::string& name = arguments.front();
         std::vector<std::string> words = {"study"};
         words.insert(words.end(), arguments.begin(), arguments.end());
         words.insert(words.end(), {"--quiet", "--output", name});

@@ -9,6 +9,8 @@
 #include "granular/backend/any_of.hpp"
 #include "granular/force_models.hpp"  // generated from the files in force_models/
 
+#include <algorithm>
+
 namespace hilda::granular {
 
 /// Whether the stiffness of a normal law is computed from the moduli of the materials, as the law states by
@@ -147,6 +149,23 @@ HILDA_HD inline ContactForce<R> evaluate(const PairLaw& law, const ContactPoint<
     visit(law.spin, [&](const auto& l) { about_n = l(contact, normal, k_t, gamma_t, history); });
     out.T += about_n * contact.n;
     return out;
+}
+
+/// Stiffness ∂F/∂δ of the normal law without damping, the larger one of loading and unloading [N/m]
+inline double normal_stiffness(const PairLaw& law, ContactPoint<double> contact,
+                               const History<double>& history)
+{
+    contact.v_n = 0;
+    const double delta = contact.delta, change = 1e-4 * delta;
+    const auto force = [&](double overlap) {
+        NormalForce<double> normal{};
+        History<double> now = history;
+        contact.delta = overlap;
+        law.normal.visit([&](const auto& l) { normal = normal_force(l, contact, now); });
+        return normal.F;
+    };
+    const double F = force(delta);
+    return std::max(force(delta + change) - F, F - force(delta - change)) / change;
 }
 
 /// Elastic energy of a contact: of the normal spring with the cohesion, and of the springs of friction,

@@ -51,6 +51,14 @@ struct ToolBody {
     Vec3 centre = {0, 0, 0};  ///< centre of mass relative to Boundary::r, in the frame of Boundary::p [m]
 };
 
+/// Stiffness of the contacts of a tool
+struct ToolStiffness {
+    double present = 0;  ///< sum of the present contacts [N/m]
+    double single = 0;   ///< largest of a contact with the overlap single_overlap [N/m]
+
+    static constexpr double single_overlap = 1e-3;  ///< over the radius of the grain
+};
+
 /// The grains of a co-simulation, as the mechanism sees them. The functions throw io::NumericalFailure.
 class Exchange {
 public:
@@ -68,8 +76,7 @@ public:
     /// are constant in these steps. The impulses are written to `to`.
     virtual void advance(const std::vector<ToolMotion>& motions, long number,
                          std::vector<ToolImpulse>& to) = 0;
-    /// Upper bound of the present stiffness of the contacts of each tool [N/m]
-    virtual std::vector<double> stiffness() = 0;
+    virtual std::vector<ToolStiffness> stiffness() = 0;
     /// Writes a checkpoint of the grains.
     virtual void save() = 0;
     /// Ends the run of the grains and writes its outputs, with this exit code in its summary.

@@ -12,7 +12,7 @@
 namespace hilda::granular {
 
 /// Version of the messages. Both programs must have the same.
-inline constexpr std::uint64_t exchange_version = 1;
+inline constexpr std::uint64_t exchange_version = 2;
 
 /// The grains of the process at the other end of a channel. Exceptions there are thrown here.
 class RemoteExchange final : public Exchange {
@@ -26,7 +26,7 @@ public:
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
     void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
-    std::vector<double> stiffness() override;
+    std::vector<ToolStiffness> stiffness() override;
     void save() override;
     void close(int code) override;
 

@@ -93,19 +93,14 @@ void Soil::advance(const std::vector<ToolMotion>& motions, long steps, std::vect
     }
 }
 
-/// Σ 3/2 F_n/δ over the contacts of the tool: the stiffness of the Hertz law, and 3/2 of that of linear
-/// springs
-std::vector<double> Soil::stiffness()
+std::vector<ToolStiffness> Soil::stiffness()
 {
-    std::vector<double> sum(number.size(), 0);
-    for (const ContactRecord& c : world().contacts()) {
-        if (!c.boundary || !(c.delta > 0)) continue;
-        const Boundary& b = world().all_boundaries()[c.j];
-        const int body_of = b.body >= 0 ? b.body : static_cast<int>(c.j);
-        for (std::size_t k = 0; k < number.size(); ++k)
-            if (number[k] == body_of) sum[k] += 1.5 * std::abs(c.F.dot(c.n)) / c.delta;
-    }
-    return sum;
+    const std::vector<double> present = world().boundary_stiffness();
+    std::vector<ToolStiffness> of;
+    for (const int k : number)
+        of.push_back({.present = present[static_cast<std::size_t>(k)],
+                      .single = world().contact_stiffness(k, ToolStiffness::single_overlap)});
+    return of;
 }
 
 }  // namespace hilda::granular

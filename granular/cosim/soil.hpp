@@ -15,17 +15,21 @@ public:
     /// or load.
     Soil(const RunOptions& options, Continuation run, const std::vector<std::string>& names);
 
+    /// Inserts the particles without a run, for stiffness(). open() must not be called then.
+    void insert() const { insert_particles(given.c); }
+    World& world() const { return run ? *run->case_of_run().world : *given.c.world; }
+    const std::vector<std::string>& notices() const { return given.c.notices; }  ///< before open()
+
     double h() const override { return step; }
     const std::vector<Tool>& tools() const override { return all; }
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
     void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
-    std::vector<double> stiffness() override;
+    std::vector<ToolStiffness> stiffness() override;
     void save() override { run->save(); }
     void close(int code) override { run->close(code); }
 
 private:
-    World& world() const { return *run->case_of_run().world; }
     void place(const std::vector<ToolMotion>& motions) const;
     /// Loads on tool k about its centre of mass, with the place that it had when they were computed
     Wrench about_centre(std::size_t k, const Wrench& load, const EulerParameters<double>& p) const;

@@ -180,6 +180,49 @@ World::StepLimits World::step_limits(double least_speed) const
     return limits;
 }
 
+std::vector<double> World::boundary_stiffness() const
+{
+    update_for_query();
+    const Arrays<par::Cpu>& of = engine->arrays();
+    const Pairs<par::Cpu>& pairs = of.pairs;
+    std::vector<double> sum(boundaries.size(), 0);
+    for (std::uint32_t n = 0; n < pairs.count; ++n) {
+        const std::uint32_t j = pairs.j.data()[n], surface = j & ~PairView::boundary_bit;
+        if (j == surface) continue;
+        const std::uint32_t i = pairs.i.data()[n];
+        const double R = of.particle.velocity.data()[i].w;
+        const Nearest near =
+            surfaces().nearest(surface, global_position(domain.grid, of.particle.position.data()[i]), R);
+        if (!(R > near.distance)) continue;
+        const std::uint32_t k = surfaces().boundary_of(surface);
+        const Boundary& b = boundaries[k];
+        ContactPoint<double> contact{};
+        contact.delta = R - near.distance, contact.R_i = R, contact.m_eff = 1;
+        contact.R_eff = effective_radius(b, R, near);
+        History<double> history{};
+        if (pairs.internal.size() > 0 && pairs.in_contact.data()[n] != 0)
+            history.largest_overlap = pairs.internal.data()[n].x;
+        const PairLaw& law = laws[laws.size() > 1 ? pairs.law.data()[n] : 0];
+        sum[b.body >= 0 ? static_cast<std::size_t>(b.body) : k] += normal_stiffness(law, contact, history);
+    }
+    return sum;
+}
+
+double World::contact_stiffness(int boundary, double overlap) const
+{
+    const Boundary& b = boundaries[static_cast<std::size_t>(boundary)];
+    double largest = 0;
+    each_particle([&](const Particle& p) {
+        const std::uint8_t law = law_of[static_cast<std::size_t>(p.material) * materials.size() +
+                                        static_cast<std::size_t>(b.material)];
+        if (law == no_law) return;
+        ContactPoint<double> contact{};
+        contact.delta = overlap * p.radius, contact.R_i = contact.R_eff = p.radius, contact.m_eff = 1;
+        largest = std::max(largest, normal_stiffness(laws[law], contact, {}));
+    });
+    return largest;
+}
+
 bool World::laws_have_energy() const
 {
     return std::all_of(laws.begin(), laws.end(), [](const PairLaw& law) { return law.has_energy(); });

@@ -6,11 +6,13 @@
 #include "io/nearest.hpp"
 #include "lie/euler_parameters.hpp"
 #include "lie/trajectory.hpp"
+#include "studies/cosim/effective_mass.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hilda::studies {
 
@@ -42,27 +44,33 @@ GrainCoupling::GrainCoupling(const CosimFile& file, std::unique_ptr<granular::Ex
     : file(file), grains(std::move(of)), h(grains->h()), k(file.substeps)
 {}
 
-void GrainCoupling::prepare(dae::Description& d, std::optional<long> node)
+void GrainCoupling::find_bodies(const dae::Description& d)
 {
-    dae::Model& model = *d.model;
+    model = d.model.get();
+    const std::vector<dae::Body>& bodies = model->all_bodies();
     std::vector<std::string> names;
-    for (const dae::Body& body : model.all_bodies()) names.push_back(body.name);
+    for (const dae::Body& body : bodies) names.push_back(body.name);
     for (const CosimPair& pair : file.pairs) {
         const auto found = std::find(names.begin(), names.end(), pair.body);
         if (found == names.end())
             throw io::InvalidInput(pair.place + ": no body of " + file.model + " has the name" +
                                    io::with_nearest(pair.body, names));
         const int body = static_cast<int>(found - names.begin());
+        const std::size_t j = all.size();
         all.push_back({.name = pair.body, .body = body});
-        mass.push_back(model.all_bodies()[static_cast<size_t>(body)].m);
-    }
-    std::vector<granular::ToolBody> bodies;
-    for (std::size_t j = 0; j < all.size(); ++j) {
-        const auto b = static_cast<size_t>(all[j].body);
-        frame.emplace_back(d.x.body[b].A.transpose() * to_lie(grains->tools()[j].place.p));
+        mass.push_back(bodies[static_cast<size_t>(body)].m);
+        frame.emplace_back(d.x.body[static_cast<size_t>(body)].A.transpose() *
+                           to_lie(grains->tools()[j].place.p));
         check_tool(j, d);
-        bodies.push_back({mass[j], to_granular(lie::Vec3(-(frame[j].transpose() * file.pairs[j].r)))});
     }
+}
+
+void GrainCoupling::prepare(dae::Description& d, std::optional<long> node)
+{
+    find_bodies(d);
+    std::vector<granular::ToolBody> bodies;
+    for (std::size_t j = 0; j < all.size(); ++j)
+        bodies.push_back({mass[j], to_granular(lie::Vec3(-(frame[j].transpose() * file.pairs[j].r)))});
     grains->open(bodies, steps_before(node.value_or(0)));
     motions.resize(all.size());
     for (std::size_t j = 0; j < all.size(); ++j) {
@@ -70,7 +78,7 @@ void GrainCoupling::prepare(dae::Description& d, std::optional<long> node)
         if (!node) at_start = [this, j](const dae::State& x) { return loads(x)[j]; };
         auto coupled = std::make_unique<CoupledWrench>(all[j].body, "grains on " + all[j].name, at_start);
         force.push_back(coupled.get());
-        model.load(std::move(coupled));
+        d.model->load(std::move(coupled));
     }
 }
 
@@ -128,22 +136,61 @@ std::vector<Wrench6> GrainCoupling::loads(const lie::State& x)
     return to;
 }
 
-void GrainCoupling::begin(const lie::March& march, const std::function<void(const std::string&)>& warn)
+void GrainCoupling::begin(const lie::March& march, const std::function<void(const std::string&)>& on_warning)
 {
     for (CoupledWrench* f : force) f->end_start();
-    const std::vector<double> stiffness = grains->stiffness();
+    warn = on_warning;
+    warned.assign(all.size(), false);
+    if (march.number() == 0) refuse_unstable(grains->stiffness(), march.node());
+}
+
+double GrainCoupling::stable_step(std::size_t j, double stiffness, const lie::State& x) const
+{
+    return stiffness > 0 ? 2 * std::sqrt(effective_mass(*model, x, all[j].body) / stiffness)
+                         : std::numeric_limits<double>::infinity();
+}
+
+/// Whether the step is above the stability limit, which is at least that of the free body
+bool GrainCoupling::is_unstable(std::size_t j, double stiffness, const lie::State& x) const
+{
+    return H() * H() * stiffness > 4 * mass[j] && H() > stable_step(j, stiffness, x);
+}
+
+void GrainCoupling::refuse_unstable(const std::vector<granular::ToolStiffness>& stiffness,
+                                    const lie::State& x) const
+{
     for (std::size_t j = 0; j < all.size(); ++j) {
-        const double limit = stiffness[j] > 0 ? 2 * std::sqrt(mass[j] / stiffness[j]) : 2 * H();
-        if (H() > limit)
-            warn(fmt::format(
-                "the step {:.4g} s of the mechanism is above {:.4g} s, the stability limit of body "
-                "'{}' on the contacts of '{}' with {:.3g} N/m at t = {:.6g} s",
-                H(), limit, all[j].name, grains->tools()[j].name, stiffness[j], march.node().t));
+        const auto refuse = [&](double K, const std::string& contacts) {
+            if (!is_unstable(j, K, x)) return;
+            throw io::InvalidInput(fmt::format(
+                "{}: the step H = {:.4g} s of the mechanism must be at most {:.3g} s, the stability limit of "
+                "body '{}' on {} with {:.3g} N/m; reduce substeps",
+                file.pairs[j].place, H(), stable_step(j, K, x), all[j].name, contacts, K));
+        };
+        refuse(stiffness[j].single, fmt::format("one contact with an overlap of {} % of the radius",
+                                                100 * granular::ToolStiffness::single_overlap));
+        refuse(stiffness[j].present, "its contacts at the start");
+    }
+}
+
+/// Warns once of each body whose contacts have become too stiff for the step.
+void GrainCoupling::check_stability(const lie::State& x)
+{
+    const std::vector<granular::ToolStiffness> stiffness = grains->stiffness();
+    for (std::size_t j = 0; j < all.size(); ++j) {
+        const double K = stiffness[j].present;
+        if (warned[j] || !is_unstable(j, K, x)) continue;
+        warned[j] = true;
+        warn(fmt::format(
+            "the step {:.4g} s of the mechanism is above {:.3g} s, the stability limit of body '{}' "
+            "on the contacts of '{}' with {:.3g} N/m at t = {:.6g} s; reduce substeps",
+            H(), stable_step(j, K, x), all[j].name, grains->tools()[j].name, K, x.t));
     }
 }
 
 void GrainCoupling::before_step(lie::March& march)
 {
+    if (march.number() % nodes_between_checks == 0) check_stability(march.node());
     const long n = march.number(), before = n == 0 ? 0 : (k - 1) / 2, steps = n == 0 ? k / 2 + 1 : k;
     set_motions(march.node(), -static_cast<double>(before) * h);
     grains->advance(motions, steps, impulses);

@@ -10,6 +10,10 @@
 
 #include <memory>
 
+namespace hilda::dae {
+class Model;
+}
+
 namespace hilda::studies {
 
 class GrainCoupling final : public Coupling {
@@ -19,6 +23,16 @@ public:
     /// Step of the mechanism [s]
     double H() const { return h * static_cast<double>(k); }
     const std::vector<CoupledTool>& tools() const override { return all; }
+
+    /// Finds the bodies of the pairs. Throws io::InvalidInput for a pair without a body, and for a boundary
+    /// that is not at the place of its body or has another mass.
+    void find_bodies(const dae::Description& description);
+    /// The stability limit 2 √(m/K) of a body whose contacts have this stiffness K [N/m], with its
+    /// effective_mass() in the state x [s]
+    double stable_step(std::size_t tool, double stiffness, const lie::State& x) const;
+    /// Throws io::InvalidInput if the step is above the stability limit of a body on one contact, or on its
+    /// present contacts.
+    void refuse_unstable(const std::vector<granular::ToolStiffness>& stiffness, const lie::State& x) const;
 
     void prepare(dae::Description& description, std::optional<long> node) override;
     void begin(const lie::March& march, const std::function<void(const std::string&)>& warn) override;
@@ -33,10 +47,13 @@ private:
     void set_motions(const lie::State& x, double time);
     Vec6 velocity(const lie::State& x, int body) const;
     std::vector<Wrench6> loads(const lie::State& x);
+    bool is_unstable(std::size_t tool, double stiffness, const lie::State& x) const;
+    void check_stability(const lie::State& x);
     void check_tool(std::size_t number, const dae::Description& d) const;
 
     const CosimFile& file;
     std::unique_ptr<granular::Exchange> grains;
+    const dae::Model* model = nullptr;
     const double h;  ///< of the grains [s]
     const long k;    ///< substeps
     std::vector<CoupledTool> all;
@@ -45,6 +62,10 @@ private:
     std::vector<granular::ToolMotion> motions;    ///< for the exchange
     std::vector<granular::ToolImpulse> impulses;  ///< of the exchange
     std::vector<double> mass;                     ///< of the bodies [kg]
+    std::function<void(const std::string&)> warn;
+    std::vector<bool> warned;  ///< of the stability limit, by body
+
+    static constexpr long nodes_between_checks = 16;  ///< of the stability limit
 };
 
 }  // namespace hilda::studies

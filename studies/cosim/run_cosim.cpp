@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/cosim/run_cosim.hpp"
 
-#include "granular/cosim/soil.hpp"
-#include "granular/running/earlier_run.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "studies/cosim/grain_coupling.hpp"
 #include "studies/cosim/grain_process.hpp"
+#include "studies/cosim/local_grains.hpp"
 #include "studies/running/single_run.hpp"
 
 #include <omp.h>
-#include <filesystem>
 #include <iostream>
 
 namespace hilda::studies {
@@ -21,32 +19,18 @@ namespace {
 
 constexpr const char* grains_folder = "/grains";
 
-std::vector<std::string> boundaries(const CosimFile& file)
-{
-    std::vector<std::string> names;
-    for (const CosimPair& pair : file.pairs) names.push_back(pair.boundary);
-    return names;
-}
-
 /// The grains in this process
 std::unique_ptr<granular::Exchange> grains_here(const CosimFile& file, double end, const RunOptions& o)
 {
     omp_set_num_threads(o.threads);
-    const granular::RunOptions options{.file = file.granular_case,
-                                       .output = o.output + grains_folder,
-                                       .checkpoint = 0,
-                                       .quiet = o.quiet || o.json,
-                                       .verbose = o.verbose,
-                                       .force = o.force,
-                                       .resume = o.resume,
-                                       .strict = o.strict,
-                                       .provenance = {{"program", "hilda cosim"}}};
-    granular::Environment here;
-    here.settings = {{"/end=" + io::shortest(end)}};
-    here.folder = std::filesystem::absolute(file.granular_case).parent_path().string();
-    const std::string text = io::read_file(file.granular_case, io::JsonSource::max_bytes);
-    return std::make_unique<granular::Soil>(options, granular::read_run(options, text, here),
-                                            boundaries(file));
+    return local_grains(file, end,
+                        {.output = o.output + grains_folder,
+                         .checkpoint = 0,
+                         .quiet = o.quiet || o.json,
+                         .verbose = o.verbose,
+                         .force = o.force,
+                         .resume = o.resume,
+                         .strict = o.strict});
 }
 
 /// The grains in a process of hilda-granular

@@ -2,6 +2,7 @@
 #include "studies/program/command_line.hpp"
 
 #include "io/error.hpp"
+#include "studies/cosim/check_cosim.hpp"
 #include "studies/cosim/run_cosim.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/columns_help.hpp"
@@ -132,7 +133,8 @@ private:
     void add_check()
     {
         add_check_options(
-            *add("check", "validate a model and print its properties", [this] { return check_model(check); }),
+            *add("check", "validate a model or a co-simulation file and print its properties",
+                 [this] { return is_cosim_file(check.model) ? check_cosim(check) : check_model(check); }),
             check);
     }
 

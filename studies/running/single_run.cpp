@@ -124,8 +124,13 @@ void SingleRun::read()
 {
     description = named_model(options.model, options.set, options.normal_rows);
     if (options.resume) load_checkpoint();
-    if (options.coupling != nullptr)
+    if (options.coupling != nullptr) {
+        if (!from) {  // an invalid start is reported before the other side writes files
+            dae::Description alone = named_model(options.model, options.set, options.normal_rows);
+            dae::start(alone, {.fix_initial = options.fix_initial});
+        }
         options.coupling->prepare(description, from ? std::optional(from->number) : std::nullopt);
+    }
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
     grid = grid_of(options, result.end, scheme.adaptive);

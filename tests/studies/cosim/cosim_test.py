@@ -18,6 +18,8 @@ import sys
 import tempfile
 import time
 
+import jsonschema
+
 M, RADIUS = 3e-3, 6e-3
 J = 0.4 * M * RADIUS ** 2
 CUP = {"hilda_case": 1, "name": "cup", "domain": {"low": [-0.02, -0.02, -0.01], "high": [0.02, 0.02, 0.1]},
@@ -258,10 +260,93 @@ def errors(runs):
     cosim("motion", r"tool 'ball': must have no formulas", case=other)
 
 
+def check(runs):
+    """hilda check: the steps, the stability limit of a body on its contacts, and what does not fit"""
+    def checked(name, *arguments, code=0, **changes):
+        process = subprocess.run([runs.hilda, "check", f"{name}/cosim.json", *arguments], cwd=runs.folder, text=True,
+                                 capture_output=True, check=False)
+        expect(process.returncode == code, f"check of {name}: ended with {process.returncode}: {process.stderr}")
+        return process.stdout if code == 0 else process.stderr
+
+    # Linear springs with k_n = 2000 N/m: one contact, and three of a ball that touches all grains of the seat
+    steps = dict(COSIM, substeps=10)
+    runs.files("check", steps, SEAT, struck())
+    report = json.loads(checked("check", "--json"))
+    pair = report["pairs"][0]
+    close = lambda a, b: abs(a - b) <= 1e-6 * abs(b)
+    expect(close(report["step"], 10 * SEAT["step"]) and close(pair["effective_mass"], M), f"{report}")
+    expect(close(pair["single_contact_stiffness"], 2e3) and close(pair["stable_contacts"], 4 * M / (2e3 * report["step"] ** 2)), f"{pair}")
+    expect(pair["contact_stiffness"] == 0 and pair["stable_step"] is None, f"{pair}")
+    text = checked("check")
+    expect("boundary 'ball', mass 0.003 kg" in text and "no contacts at the start" in text and "1000 exchanges" in text, text)
+    limit = 2 * math.sqrt(M / 2e3) / SEAT["step"]
+    runs.files("below", dict(COSIM, substeps=math.floor(limit)), SEAT, struck())
+    checked("below")
+    runs.files("above", dict(COSIM, substeps=math.ceil(limit)), SEAT, struck())
+    too_large = r"cosim.json:1:\d+ \(/pairs/0\): the step H = 0.00245 s of the mechanism must be at most 0.00245 s, .* one contact with an overlap of 0.1 %"
+    expect(re.search(too_large, checked("above", code=3)), checked("above", code=3))
+    runs.refused("above", 3, too_large)
+    pressed, case = struck(), copy.deepcopy(SEAT)
+    pressed["bodies"][0]["r"][2] -= 2e-5
+    case["boundaries"][0]["r"] = pressed["bodies"][0]["r"]
+    runs.files("pressed", steps, case, pressed)
+    pair = json.loads(checked("pressed", "--json"))["pairs"][0]
+    expect(close(pair["contact_stiffness"], 6e3) and close(pair["stable_step"], 2 * math.sqrt(M / 6e3)), f"{pair}")
+    runs.files("stiff", dict(COSIM, substeps=math.floor(0.9 * limit)), case, pressed)
+    runs.refused("stiff", 3, r"must be at most 0.00141 s, the stability limit of body 'ball' on its contacts at the start with 6e\+03 N/m")
+    heavier = dict(MODEL, gravity=[0, 0, -1.62])
+    runs.files("moon", COSIM, CUP, heavier)
+    process = subprocess.run([runs.hilda, "check", "moon/cosim.json", "--quiet"], cwd=runs.folder, text=True, capture_output=True, check=True)
+    expect(process.stdout == "" and "gravity of the model is (0, 0, -1.62) m/s², that of the case is (0, 0, -9.81) m/s²" in process.stderr, process.stderr)
+    expect("valid for models only" in checked("moon", "--fix-initial", code=2), "options of models")
+    # a start that violates a constraint writes no file
+    model = copy.deepcopy(MODEL)
+    model["constraints"] = [{"name": "rod", "type": "distance", "body_i": "ground", "body_j": "ball", "s_bar_p_i": [0, 0, 1], "s_bar_q_j": [0, 0, 0],
+                             "length": 0.5}]
+    runs.files("violated", COSIM, CUP, model)
+    err = runs.finish("violated", "--output", "violated/out", code=3)
+    expect("rod" in err, err)
+    expect(not (runs.folder / "violated/out/grains").exists(), "no file is written before an error of the start")
+
+
+def schema(runs):
+    """The schema accepts the files of this test and of the examples, and rejects what the program rejects"""
+    root = pathlib.Path(__file__).resolve().parents[3]
+    validator = jsonschema.Draft202012Validator(json.loads((root / "studies/cosim/cosim.schema.json").read_text()))
+    examples = list((root / "examples/cosim").glob("*/*.json"))
+    files = [json.loads(file.read_text()) for file in examples]
+    good = [file for file in files if "hilda_cosim" in file] + [COSIM, dict(COSIM, interval=0.1, integrator="rA-half-1-kick")]
+    expect(len(good) > 2, "there are examples")
+    for file in good:
+        expect(not list(validator.iter_errors(file)), f"{file}: {list(validator.iter_errors(file))}")
+    for change in ({"substeps": 0}, {"substeps": 1.5}, {"end": 0}, {"interval": -1}, {"pairs": []}, {"pairs": [{"boundary": "ball"}]}, {"step": 1e-3},
+                   {"pairs": [{"body": "ball", "r": [0, 0]}]}, {"integrator": "rA-half-2"}, {"hilda_cosim": 2}, {"model": 1}):
+        file = dict(COSIM, **change)
+        expect(list(validator.iter_errors(file)), f"the schema rejects {change}")
+        runs.files("schema", file)
+        runs.refused("schema", 3, r"cosim.json:1:\d+")
+
+
+def example(runs):
+    """The pendulum of the example strikes the bed, and loses energy there"""
+    folder = pathlib.Path(__file__).resolve().parents[3] / "examples/cosim/strike"
+    process = subprocess.run([runs.hilda, "cosim", "strike.json", "--end", "0.25", "--output", runs.folder / "strike"], cwd=folder, text=True,
+                             capture_output=True, check=False)
+    expect(process.returncode == 0 and "warning" not in process.stderr, f"the example: {process.stderr}")
+    rows = runs.table("strike/tools.csv")
+    begin = next(row["t"] for row in rows if row["ball.Fx"] != 0)
+    expect(0.18 < begin < 0.229 and max(abs(row["ball.Fx"]) for row in rows) > 2, f"it strikes the bed at {begin} s")
+    work = sum(row["ball.power"] for row in rows) * 1e-3
+    expect(-0.058 < work < -0.01, f"the bed takes energy from the ball: {work} J")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], sys.argv[2], folder)
         errors(runs)
+        check(runs)
+        schema(runs)
+        example(runs)
         difference = ball_is_a_tool(runs)
         momentum(runs)
         orders(runs)

@@ -38,11 +38,15 @@ Soil::Soil(const RunOptions& options, Continuation run_of, const std::vector<std
 void Soil::open(const std::vector<ToolBody>& bodies, long steps)
 {
     body = bodies;
+    World& world = *given.c.world;
     for (std::size_t k = 0; k < number.size(); ++k) {
-        Boundary& b = given.c.world->boundary(number[k]);
-        b.mass = body[k].mass;  // part of the damping of the contacts
+        Boundary& b = world.boundary(number[k]);
         b.free.fill(false);
         b.F = b.T = {0, 0, 0};
+        // Part of the damping of the contacts. The loads of boundaries without a mass are not computed.
+        for (int j = 0; j < static_cast<int>(world.all_boundaries().size()); ++j)
+            if (j == number[k] || world.all_boundaries()[static_cast<std::size_t>(j)].body == number[k])
+                world.boundary(j).mass = body[k].mass;
     }
     run = SteppedRun::open(options, std::move(given), options.resume ? steps : -1);
 }

@@ -209,13 +209,13 @@ void GrainCoupling::before_step(lie::March& march)
         CoupledTool& tool = all[j];
         const Wrench6 impulse = H() * now.head<6>();
         tool.P = impulse.head<3>(), tool.L = impulse.tail<3>(), tool.work = i.work;
-        tool.F = now.head<3>(), tool.T = now.segment<3>(3);
+        tool.acts = true;
     }
 }
 
 void GrainCoupling::before_finish()
 {
-    for (CoupledTool& tool : all) tool.P.setZero(), tool.L.setZero(), tool.work = 0;
+    for (CoupledTool& tool : all) tool.acts = false;
 }
 
 void GrainCoupling::close(int code)

@@ -23,10 +23,10 @@ namespace hilda::studies {
 struct CoupledTool {
     std::string name;  ///< of the body
     int body = 0;
-    /// Mean loads of the last exchange, about the centre of mass, global frame [N, N m]
-    lie::Vec3 F = lie::Vec3::Zero(), T = lie::Vec3::Zero();
-    lie::Vec3 P = lie::Vec3::Zero(), L = lie::Vec3::Zero();  ///< impulses of the last exchange [N s, N m s]
-    double work = 0;  ///< of the impulses with the motion that the other side assumes [J]
+    /// Impulses of the last exchange, about the centre of mass, global frame [N s, N m s]
+    lie::Vec3 P = lie::Vec3::Zero(), L = lie::Vec3::Zero();
+    double work = 0;   ///< of the impulses with the motion that the other side assumes [J]
+    bool acts = true;  ///< whether the impulses belong to the node that was computed last
 };
 
 /// The functions throw io::InvalidInput, io::IoError, io::UsageError and io::NumericalFailure.

@@ -6,6 +6,8 @@
 #include "studies/running/coupling.hpp"
 #include "studies/running/tables/table_sink.hpp"
 
+#include <algorithm>
+
 namespace hilda::studies {
 
 namespace {
@@ -13,13 +15,13 @@ namespace {
 class Tools final : public TableSink {
 public:
     explicit Tools(const RunSetup& run)
-        : TableSink(run, "tools"), coupling(*run.coupling), H(run.grid.h), error(coupling.tools().size(), 0)
+        : TableSink(run, "tools"), coupling(*run.coupling), H(run.grid.h), sums(coupling.tools().size())
     {}
 
     void transfer(io::Archive& a) override
     {
         TableSink::transfer(a);
-        a.list(error);
+        a.list(sums);
     }
 
 private:
@@ -33,11 +35,13 @@ private:
             for (const char* r : {"x", "y", "z"})
                 add(r, "m", std::string("place of the centre of mass, ") + r);
             for (const char* e : {"e0", "e1", "e2", "e3"}) add(e, "", "Euler parameter of the orientation");
-            for (const char* F : {"Fx", "Fy", "Fz"}) add(F, "N", "mean force on the body, global frame");
+            for (const char* F : {"Fx", "Fy", "Fz"})
+                add(F, "N", "force on the body, mean since the previous row, global frame");
             for (const char* T : {"Tx", "Ty", "Tz"})
-                add(T, "N m", "mean torque about the centre of mass, global frame");
-            add("power", "W", "power of the loads on the body, with the velocity of the body");
+                add(T, "N m", "torque about the centre of mass, mean since the previous row, global frame");
+            add("power", "W", "power of the loads on the body, mean since the previous row");
             add("power_grains", "W", "the same with the velocity that the grains have seen");
+            add("work", "J", "time integral of power from the start");
             add("energy_error", "J", "time integral of power - power_grains from the start");
         }
         return all;
@@ -46,23 +50,40 @@ private:
     void append(std::vector<double>& row, const RunNode& node) override
     {
         if (node.is_row) row.push_back(node.x.t);
-        for (std::size_t k = 0; k < error.size(); ++k) {
+        for (std::size_t k = 0; k < sums.size(); ++k) {
             const CoupledTool& tool = coupling.tools()[k];
             const lie::Motion& b = node.x.body[static_cast<size_t>(tool.body)];
-            const double work = tool.P.dot(b.rdot) + tool.L.dot(b.A * b.omega_bar);
-            error[k] += work - tool.work;
+            Sums& sum = sums[k];
+            if (tool.acts) {
+                const double work = tool.P.dot(b.rdot) + tool.L.dot(b.A * b.omega_bar);
+                sum.P += tool.P, sum.L += tool.L;
+                sum.work += work, sum.work_grains += tool.work;
+                sum.total_work += work, sum.error += work - tool.work;
+                sum.exchanges += 1;
+            }
             if (!node.is_row) continue;
             studies::append(row, b.r);
             const lie::Vec4 p = lie::euler_parameters(b.A);
             row.insert(row.end(), p.begin(), p.end());
-            studies::append(row, tool.F), studies::append(row, tool.T);
-            row.insert(row.end(), {work / H, tool.work / H, error[k]});
+            const double time = H * std::max(1., sum.exchanges);
+            studies::append(row, sum.P / time), studies::append(row, sum.L / time);
+            row.insert(row.end(), {sum.work / time, sum.work_grains / time, sum.total_work, sum.error});
+            sum = {.total_work = sum.total_work, .error = sum.error};
         }
     }
 
+    struct Sums {
+        // since the previous row
+        lie::Vec3 P = lie::Vec3::Zero(), L = lie::Vec3::Zero();  ///< [N s], [N m s]
+        double work = 0, work_grains = 0;                        ///< [J]
+        double exchanges = 0;
+        // since the start
+        double total_work = 0, error = 0;  ///< [J]
+    };
+
     const Coupling& coupling;
-    const double H;             ///< step of the mechanism [s]
-    std::vector<double> error;  ///< of each tool [J]
+    const double H;          ///< step of the mechanism [s]
+    std::vector<Sums> sums;  ///< of each tool
 };
 
 const bool registered =

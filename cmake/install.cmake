@@ -68,6 +68,9 @@ hilda_component(studies
 if(TARGET hilda_program)
     install(TARGETS hilda_program hilda_granular_program)
 endif()
+if(TARGET hilda_mpi)
+    install(TARGETS hilda_mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
+endif()
 if(TARGET hilda_hdf5)
     install(TARGETS hilda_hdf5 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
 endif()
@@ -87,7 +90,7 @@ function(hilda_install_headers)
 endfunction()
 hilda_install_headers(
     FOLDERS io lie dae contact reference studies/framework studies/running studies/problems granular/force_models
-    FILES studies/program/run_model.hpp
+    FILES studies/program/run_model.hpp studies/distribution/shard.hpp
         granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/par.hpp granular/backend/real.hpp
         granular/clumps/clump_template.hpp granular/clumps/sphere_union.hpp
         granular/core/attached.hpp granular/core/boundary.hpp granular/core/boundary_blocks.hpp

@@ -104,6 +104,7 @@ const std::map<std::string, std::set<std::string>> folders = {
      {"",
       "benchmarks",
       "cosim",
+      "distribution",
       "experiments",
       "experiments/chapter3",
       "experiments/chapter4",

@@ -11,6 +11,7 @@ Sweep<ErrorRun> ConvergenceStudy::runs(const StudyContext& study, const std::vec
 {
     Sweep<ErrorRun> all(benchmarks, schemes, steps);
     for (ErrorRun& run : all) {
+        run.error.assign(norms.size(), std::nan(""));  // of a run that is lost
         run.order.assign(norms.size(), std::nan(""));
         run.at_floor.assign(norms.size(), 0);
     }

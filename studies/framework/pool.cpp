@@ -2,14 +2,17 @@
 #include "studies/framework/pool.hpp"
 
 #include "io/progress.hpp"
+#include "studies/distribution/ranks.hpp"
 #include "studies/running/finished_jobs.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -43,20 +46,70 @@ void Pool::run(const std::function<void(long)>& job) const
         if (e) std::rethrow_exception(e);
 }
 
-void Pool::run(const std::function<void(long)>& job,
-               const std::function<void(io::Archive&, long)>& transfer) const
+void Pool::run(const std::function<void(long)>& job, const Transfer& transfer, const Lost& lost) const
 {
-    if (finished == nullptr) {
+    if (sharing == nullptr) {
         run(job);
         return;
     }
-    const long pool = finished->next_pool();
-    run([&](long k) {
-        const auto result = [&](io::Archive& a) { transfer(a, k); };
-        if (finished->restore({pool, k}, result)) return;
+    FinishedJobs* const finished = sharing->finished;
+    const long pool = finished == nullptr ? 0 : finished->next_pool();
+    if (sharing->ranks != nullptr) {
+        run_on_ranks(pool, job, transfer, lost);
+    } else {
+        run([&](long k) {
+            if (!sharing->shard.has(k)) return;
+            const auto result = [&](io::Archive& a) { transfer(a, k); };
+            if (finished != nullptr && finished->restore({pool, k}, result)) return;
+            job(k);
+            if (finished != nullptr) finished->keep({pool, k}, result);
+        });
+    }
+    if (sharing->shard.is_part()) throw PartDone{};
+}
+
+void Pool::run_on_ranks(long pool, const std::function<void(long)>& job, const Transfer& transfer,
+                        const Lost& lost) const
+{
+    Ranks& ranks = *sharing->ranks;
+    const auto compute = [&](long k) {
         job(k);
-        finished->keep({pool, k}, result);
+        io::Archive a;
+        transfer(a, k);
+        return a.bytes();
+    };
+    if (!ranks.is_first()) {
+        ranks.work(threads, compute);
+        throw PartDone{};
+    }
+    FinishedJobs* const finished = sharing->finished;
+    std::deque<long> jobs;
+    for (long k = 0; k < count; ++k) {
+        const auto result = [&](io::Archive& a) { transfer(a, k); };
+        if (!sharing->shard.has(k) || (finished != nullptr && finished->restore({pool, k}, result))) continue;
+        jobs.push_back(k);
+    }
+    std::optional<JobEnd> thrown;  // with the lowest number
+    long done = count - static_cast<long>(jobs.size());
+    io::ProgressLine line(label.empty());
+    ranks.distribute(std::move(jobs), threads, compute, [&](const JobEnd& end) {
+        const auto result = [&](io::Archive& a) { transfer(a, end.job); };
+        if (end.kind == JobEnd::computed) {
+            io::Archive a(end.text, "the result of a run");
+            result(a);
+            a.end();
+            if (finished != nullptr) finished->keep({pool, end.job}, result);
+        } else if (end.kind == JobEnd::threw) {
+            if (!thrown || end.job < thrown->job) thrown = end;
+        } else {
+            sharing->lost.push_back(end.text);
+            if (lost) lost(end.job, end.text);
+        }
+        ++done;
+        if (line.is_due()) line.show(fmt::format("{} {}/{}, {:.1f} s", label, done, count, line.seconds()));
     });
+    line.clear();
+    if (thrown) thrown->rethrow();
 }
 
 }  // namespace hilda::studies

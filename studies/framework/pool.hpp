@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include "studies/distribution/shard.hpp"
+
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hilda::io {
 class Archive;
@@ -14,29 +17,47 @@ class Archive;
 namespace hilda::studies {
 
 class FinishedJobs;
+class Ranks;
+
+/// What the pools of a study share
+struct JobSharing {
+    FinishedJobs* finished = nullptr;    ///< keeps the results of jobs for a resumed study; nullptr: none
+    Ranks* ranks = nullptr;              ///< over which the jobs are distributed; nullptr: this process
+    Shard shard = {};                    ///< the jobs that are computed
+    std::vector<std::string> lost = {};  ///< a line for each job whose process was ended
+};
 
 class Pool {
 public:
-    /// `count` jobs on at most `threads` threads. On a terminal a progress line with this label is shown on
-    /// stderr; none for "". `finished` keeps the results of jobs for a resumed study; nullptr: they are not
-    /// kept.
-    Pool(int threads, std::string label, long count, FinishedJobs* finished = nullptr)
-        : threads(threads), label(std::move(label)), count(count), finished(finished)
+    /// `count` jobs on at most `threads` threads, or in as many processes on each rank. On a terminal a
+    /// progress line with this label is shown on stderr; none for "".
+    Pool(int threads, std::string label, long count, JobSharing* sharing = nullptr)
+        : threads(threads), label(std::move(label)), count(count), sharing(sharing)
     {}
 
     /// Calls job(0) … job(count - 1), each once, started in this order. After all jobs have ended, rethrows
     /// the exception of the lowest job number.
     void run(const std::function<void(long)>& job) const;
+
+    using Transfer = std::function<void(io::Archive&, long)>;
+    using Lost = std::function<void(long, const std::string&)>;
     /// The same for jobs whose results transfer(archive, k) writes or reads. A job that finished before the
     /// study was interrupted is not called again: its result is read.
-    void run(const std::function<void(long)>& job,
-             const std::function<void(io::Archive&, long)>& transfer) const;
+    ///
+    /// The jobs of a study that accepts takes::shard are distributed over the ranks of mpirun and over
+    /// shards. A process that has only a part of them ends with PartDone. A job on a rank whose process is
+    /// ended, for example because the memory is exhausted, has no result: lost(k, message) is called for it,
+    /// where `message` says how the process ended.
+    void run(const std::function<void(long)>& job, const Transfer& transfer, const Lost& lost = {}) const;
 
 private:
+    void run_on_ranks(long pool, const std::function<void(long)>& job, const Transfer& transfer,
+                      const Lost& lost) const;
+
     int threads;
     std::string label;
     long count;
-    FinishedJobs* finished;
+    JobSharing* sharing;
 };
 
 }  // namespace hilda::studies

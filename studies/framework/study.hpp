@@ -5,6 +5,7 @@
 
 #include "io/registry.hpp"
 #include "lie/settings.hpp"
+#include "studies/distribution/shard.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -60,6 +61,8 @@ struct StudyOptions {
     bool all = false;     ///< the complete default selection of a study that has a short one
     bool force = false;   ///< accept a non-empty directory and a reference solution that is too coarse
     bool resume = false;  ///< continue the interrupted study of the output directory
+    Shard shard = {};     ///< the runs that are computed
+    std::vector<std::string> arguments;  ///< of the command line, for hilda collect
     bool plot = true, quiet = false, json = false;
     std::vector<std::string> figure_formats;  ///< empty: png
     bool latex = false;                       ///< write study.tex
@@ -85,7 +88,9 @@ enum : unsigned {
     sweep = 2048,
     rtol = 4096,
     seed = 8192,
-    strict = 16384
+    strict = 16384,
+    /// One pool of independent runs: --shard and mpirun. Code after it runs once all results are there.
+    shard = 32768
 };
 }  // namespace takes
 

@@ -7,6 +7,7 @@
 #include "io/message.hpp"
 #include "io/nearest.hpp"
 #include "io/program.hpp"
+#include "studies/distribution/ranks.hpp"
 #include "studies/running/latex.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
@@ -62,6 +63,7 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
         {"--seed", std::to_string(o.seed.value_or(0))},
         {"--check", o.check ? "yes" : "no"},
         {"--all", o.all ? "yes" : "no"},
+        {"--shard", o.shard.is_part() ? o.shard.text() : ""},
         {"plug-ins (--load)", o.plugins.empty() ? "none" : joined(o.plugins)},
         {"numerical settings",
          fmt::format("tolerance {}, linear solver {}, rho-infinity {}, reparametrise {}, rtol {}, atol {}",
@@ -82,9 +84,19 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
     return all;
 }
 
+/// The words of the command line for hilda collect; empty if there is no shard
+std::string command_of(const StudyOptions& o)
+{
+    std::string all;
+    if (o.shard.is_part())
+        for (const std::string& word : o.arguments) all += word + '\0';
+    return all;
+}
+
 }  // namespace
 
-StudyContext::StudyContext(const Study& study, const StudyOptions& options)
+StudyContext::StudyContext(const Study& study, const StudyOptions& options, Ranks* ranks,
+                           const JobRecords* collected)
     : name(study.name), keys(study.keys), options(options), answers(study.answers)
 {
     for (const Expectation& e : options.expect) {
@@ -96,9 +108,15 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options)
     }
     if (options.vtk > 0 && options.output.empty())
         refuse("--vtk writes files: with --json it needs --output");
-    if (!options.output.empty())
-        finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume);
-    if (options.resume && !options.quiet)
+    const bool is_first = ranks == nullptr || ranks->is_first();
+    if (collected != nullptr)
+        finished = std::make_unique<FinishedJobs>(*collected, identity(name, options));
+    else if (!options.output.empty() && is_first)
+        finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume,
+                                                  command_of(options));
+    sharing = std::make_unique<JobSharing>(
+        JobSharing{.finished = finished.get(), .ranks = ranks, .shard = options.shard});
+    if (options.resume && !options.quiet && collected == nullptr)
         io::message(fmt::format(
             "hilda: {} read from {}\n",
             io::counted(static_cast<long>(finished->count()), "finished job is", "finished jobs are"),
@@ -166,13 +184,13 @@ std::vector<Benchmark> StudyContext::benchmarks(const std::vector<std::string>& 
 Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) const
 {
     return {threads > 0 ? threads : options.jobs, options.quiet ? "" : name + label, static_cast<long>(jobs),
-            finished.get()};
+            sharing.get()};
 }
 
 void StudyContext::job(const std::function<void()>& job,
                        const std::function<void(io::Archive&)>& transfer) const
 {
-    Pool(1, "", 1, finished.get()).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
+    Pool(1, "", 1, sharing.get()).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
 }
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
@@ -314,6 +332,7 @@ int StudyContext::finish()
     else if (!options.quiet)
         std::cout << text.str() << failed_runs;
     if (!options.output.empty()) write(all);
+    if (report_lost_runs()) return io::exit_code::numerical_failure;  // the others remain for --resume
     if (finished) {
         io::EndOnSignal::ignore();  // the results are complete, there is nothing left to resume
         finished->remove();
@@ -324,6 +343,31 @@ int StudyContext::finish()
     }
     const bool passed = as_expected() && (criteria_passed || !options.check);
     return passed ? io::exit_code::done : io::exit_code::expectation_failed;
+}
+
+/// Reports the runs whose processes were ended. False if there are none.
+bool StudyContext::report_lost_runs() const
+{
+    const std::vector<std::string>& lost = sharing->lost;
+    if (lost.empty()) return false;
+    io::message(fmt::format("hilda: error[killed]: study {}: {} lost: {}{}\n", name,
+                            io::counted(static_cast<long>(lost.size()), "run was", "runs were"), lost.front(),
+                            finished ? "; the same command with --resume computes " +
+                                           std::string(lost.size() == 1 ? "it" : "them") + " again"
+                                     : ""));
+    return true;
+}
+
+int StudyContext::finish_shard()
+{
+    if (report_lost_runs()) return io::exit_code::numerical_failure;
+    finished->end_shard();
+    if (!options.quiet)
+        std::cout << fmt::format(
+            "shard {} of study {} is complete: {}\nhilda collect, with the folders of all {} shards, writes "
+            "the results\n",
+            options.shard.text(), name, FinishedJobs::shard_file(options.output), options.shard.count);
+    return io::exit_code::done;
 }
 
 void check_parts(const StudyContext& study, const std::string& what, const std::vector<std::string>& known)

@@ -33,7 +33,11 @@ public:
     /// Opens the file of the finished jobs in the output directory. io::UsageError for a key of --expect that
     /// the study does not have, for --vtk without a directory, and for --resume with other options than the
     /// interrupted study.
-    StudyContext(const Study& study, const StudyOptions& options);
+    ///
+    /// `ranks`: over which the runs are distributed; nullptr: this process computes them. `collected`: the
+    /// results of all runs, from shards; nullptr: they are computed.
+    StudyContext(const Study& study, const StudyOptions& options, Ranks* ranks = nullptr,
+                 const JobRecords* collected = nullptr);
 
     const std::string& name;
     const std::vector<std::string>& keys;  ///< of --expect
@@ -98,6 +102,8 @@ public:
     /// common keys of study.json are study, tolerance, settings, seed, set, provenance and, if
     /// options.repeats > 0, repeats.
     int finish();
+    /// The end of one of several shards: its results are complete for hilda collect. Returns the exit code.
+    int finish_shard();
 
 private:
     io::Json whole() const;
@@ -110,6 +116,9 @@ private:
     std::string failed_runs,
         numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
     std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory
+    std::unique_ptr<JobSharing> sharing;     ///< of the pools
+
+    bool report_lost_runs() const;
 };
 
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known

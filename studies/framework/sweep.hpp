@@ -36,7 +36,8 @@ public:
     }
 
     /// Calls job(row) for each row, on the threads of --jobs. Rows with small steps take longest. They start
-    /// first, so that no long run is alone at the end. A numerical failure becomes the status of its row.
+    /// first, so that no long run is alone at the end. A numerical failure becomes the status of its row; a
+    /// run on a rank of mpirun whose process was ended has the status "killed".
     template <class Job>
     void compute(const StudyContext& study, const Job& job, const std::string& label = "")
     {
@@ -46,7 +47,10 @@ public:
                          [&](size_t a, size_t b) { return (*this)[a].h < (*this)[b].h; });
         study.pool(this->size(), label)
             .run([&](long k) { compute_row((*this)[queue[k]], job); },
-                 [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); });
+                 [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); },
+                 [&](long k, const std::string& how) {
+                     (*this)[queue[k]].status = "killed", (*this)[queue[k]].message = how;
+                 });
     }
     /// The same, one row after the other, for studies that measure time
     template <class Job>

@@ -106,6 +106,17 @@ std::vector<int> bars(const std::string& option, const std::string& text)
     return N;
 }
 
+Shard shard(const std::string& option, const std::string& text)
+{
+    constexpr long most = 1000000;
+    const size_t slash = text.find('/');
+    const auto index = io::number_in<long>(text.substr(0, slash));
+    const auto count = io::number_in<long>(slash == std::string::npos ? "" : text.substr(slash + 1));
+    if (!index || !count || *index < 1 || *index > *count || *count > most)
+        refuse_option(option, fmt::format("must be I/N, part I of N with 1 <= I <= N <= {}", most), text);
+    return {.index = *index, .count = *count};
+}
+
 Expectation expectation(const std::string& option, const std::string& text)
 {
     const size_t equals = text.find('='), plus_minus = text.find("+-");

@@ -48,6 +48,9 @@ std::vector<double> relative_tolerances(const std::string& option, const std::st
 /// Numbers of bars N1,N2,...: integers from 1 to most_bars, sorted in ascending order
 std::vector<int> bars(const std::string& option, const std::string& text);
 
+/// I/N with 1 <= I <= N <= 1000000
+Shard shard(const std::string& option, const std::string& text);
+
 /// KEY=VALUE[+-TOL]
 Expectation expectation(const std::string& option, const std::string& text);
 

@@ -4,7 +4,9 @@
 #include "io/error.hpp"
 #include "studies/cosim/check_cosim.hpp"
 #include "studies/cosim/run_cosim.hpp"
+#include "studies/distribution/communicator.hpp"
 #include "studies/program/arguments.hpp"
+#include "studies/program/collect.hpp"
 #include "studies/program/columns_help.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/program/granular_program.hpp"
@@ -62,6 +64,7 @@ public:
         add_integrators();
         add_schema();
         add_study();
+        add_collect();
         add_reproduce();
         add_granular();
         add_plot();
@@ -74,6 +77,7 @@ public:
     std::function<int()> parse(int argc, char** argv)
     {
         refuse_unknown_command(argc, argv);
+        study.arguments.assign(argv + 1, argv + argc);
         try {
             app.parse(argc, argv);
         } catch (const CLI::CallForHelp&) {
@@ -167,6 +171,21 @@ private:
             add("study", "run a study: table, CSV files and figures; without KIND: list the studies",
                 [this] { return kind.empty() ? list_studies(study.json) : run_study(kind, study); });
         add_study_options(*c, kind, study);
+    }
+
+    void add_collect()
+    {
+        CLI::App* c = add("collect", "write the results of a study from its shards (--shard)", [this] {
+            const JobRecords shards = read_shards(collected.directories);
+            std::vector<std::string> words = words_of(shards);
+            words.insert(words.begin(), "hilda");
+            std::vector<char*> argv;
+            for (std::string& word : words) argv.push_back(word.data());
+            Commands of_shards(command_line_text, study.plugins);
+            of_shards.parse(static_cast<int>(argv.size()), argv.data());
+            return collect(collected, shards, of_shards.kind, of_shards.study);
+        });
+        add_collect_options(*c, collected);
     }
 
     void add_reproduce()
@@ -299,6 +318,7 @@ private:
     KinematicsOptions kinematics;
     CheckOptions check;
     StudyOptions study;
+    CollectOptions collected;
     ReproduceOptions reproduction;
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;
@@ -325,7 +345,14 @@ int command_line(int argc, char** argv)
     std::vector<char*> words;
     const std::vector<std::string> plugins = load_plugins({argv, argv + argc}, words);
     const auto commands = std::make_shared<Commands>(io::shell_quoted(argc, argv), plugins);
-    return action_of(commands, static_cast<int>(words.size()), words.data())();
+    std::function<int()> action;
+    try {
+        action = action_of(commands, static_cast<int>(words.size()), words.data());
+    } catch (const io::UsageError&) {
+        if (rank_of_environment() > 0) return io::exit_code::wrong_command_line;  // rank 0 reports it
+        throw;
+    }
+    return action();
 }
 
 }  // namespace hilda::studies

@@ -3,13 +3,16 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
+#include "studies/distribution/ranks.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <thread>
 
@@ -67,7 +70,8 @@ const std::vector<OptionOfSome>& options_of_some()
             {"--observable", takes::sweep, 0, [](const auto& o) { return !o.observable.empty(); }},
             {"--keep", takes::sweep, 0, [](const auto& o) { return o.keep; }},
             {"--format", takes::sweep, 0, [](const auto& o) { return !o.format.empty(); }},
-            {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }}};
+            {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }},
+            {"--shard", takes::shard, 0, [](const auto& o) { return o.shard.is_part(); }}};
         for (const SettingOption& setting : setting_options())
             some.push_back({setting.name, studies_with(setting.name), lacks::models,
                             [name = setting.name](const StudyOptions& o) {
@@ -76,6 +80,14 @@ const std::vector<OptionOfSome>& options_of_some()
                             }});
         return some;
     }();
+    return all;
+}
+
+std::string studies_of_independent_runs()
+{
+    std::string all;
+    for (const Study& study : studies())
+        if ((study.accepted & takes::shard) != 0) all += (all.empty() ? "" : ", ") + study.name;
     return all;
 }
 
@@ -116,16 +128,29 @@ bool takes_option(const Study& study, const std::string& option)
                        [&](const OptionOfSome& some) { return some.name != option || has(study, some); });
 }
 
-int run_study(const std::string& kind, StudyOptions options)
+namespace {
+
+/// Completes the options by defaults. io::UsageError for options that exclude each other.
+void complete(StudyOptions& options, const Study& study, const Ranks* ranks)
 {
-    const Study& study = find_study(kind);
+    const std::string& kind = study.name;
     reject_unused_options(study, options);
+    if (ranks != nullptr && (study.accepted & takes::shard) == 0)
+        throw io::UsageError("study " + kind + ": mpirun is for " + studies_of_independent_runs());
     const bool timed =
         (study.accepted & takes::repeats) != 0;  // concurrent runs would disturb the measurement
     if (timed && options.repeats == 0) options.repeats = 5;
     if (options.jobs == 0)
-        options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    if (options.output.empty() && !options.json) options.output = "out/" + kind;
+        options.jobs = timed || ranks != nullptr
+                           ? 1
+                           : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    if (options.output.empty() && !options.json)
+        options.output =
+            "out/" + kind +
+            (options.shard.is_part() ? fmt::format("-{}-of-{}", options.shard.index, options.shard.count)
+                                     : "");
+    if (options.shard.is_part() && options.output.empty())
+        throw io::UsageError("study " + kind + ": --shard writes a file: with --json it needs --output");
     if (!options.figure_formats.empty() && (!options.plot || options.output.empty()))
         throw io::UsageError("study " + kind + ": --figure-format is for figures; " +
                              (options.plot ? "with --json they need --output" : "--no-plot draws none"));
@@ -135,6 +160,20 @@ int run_study(const std::string& kind, StudyOptions options)
         throw io::UsageError("study " + kind + ": --resume needs the --output of the interrupted study");
     if (options.resume && options.force)
         throw io::UsageError("study " + kind + ": --force and --resume exclude each other");
+}
+
+/// On a rank of mpirun other than 0: computes runs for rank 0, which writes the results.
+void compute_runs_of(const Study& study, StudyOptions options, Ranks& ranks)
+{
+    options.quiet = true;
+    options.json = false;
+    options.resume = true;  // files of the output directory are not removed
+    StudyContext context(study, options, &ranks);
+    study.run(context);
+}
+
+int run_here(const Study& study, const StudyOptions& options, Ranks* ranks, const JobRecords* collected)
+{
     std::optional<io::OutputLock> lock;
     if (!options.output.empty()) {
         io::check_output_directory(
@@ -142,19 +181,57 @@ int run_study(const std::string& kind, StudyOptions options)
             FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
         lock.emplace(options.output).create();
     }
-    const io::EndOnSignal end_on_signal(options.output.empty()
+    const io::EndOnSignal end_on_signal(options.output.empty() || collected != nullptr
                                             ? ""
                                             : "interrupted; the finished runs are kept in " + options.output +
                                                   ", the same command with --resume continues");
+    std::optional<StudyContext> context;
     try {
-        StudyContext context(study, options);
-        study.run(context);
-        return context.finish();
+        context.emplace(study, options, ranks, collected);
+        study.run(*context);
+        return context->finish();
+    } catch (const PartDone&) {
+        return context->finish_shard();
     } catch (...) {
+        context.reset();
         if (!options.output.empty())
             rmdir(options.output.c_str());  // fails, as intended, if the directory is not empty
         throw;
     }
+}
+
+}  // namespace
+
+int run_study(const std::string& kind, StudyOptions options)
+{
+    std::unique_ptr<Ranks> ranks;
+    try {
+        ranks = Ranks::start();
+    } catch (const io::NotAvailable&) {
+        if (rank_of_environment() > 0) return io::exit_code::not_available;  // rank 0 reports it
+        throw;
+    }
+    if (ranks == nullptr || ranks->is_first()) {
+        const Study& study = find_study(kind);
+        complete(options, study, ranks.get());
+        return run_here(study, options, ranks.get(), nullptr);
+    }
+    try {
+        const Study& study = find_study(kind);
+        complete(options, study, ranks.get());
+        compute_runs_of(study, options, *ranks);
+    } catch (const PartDone&) {
+    } catch (const std::exception& error) {  // most errors are those of rank 0 as well, which reports them
+        ranks->report_failure(error.what());
+    }
+    return io::exit_code::done;
+}
+
+int run_collected(const std::string& kind, StudyOptions options, const JobRecords& collected)
+{
+    const Study& study = find_study(kind);
+    complete(options, study, nullptr);
+    return run_here(study, options, nullptr, &collected);
 }
 
 }  // namespace hilda::studies

@@ -152,7 +152,7 @@ const bool registered = io::Registry<Study>::add(
     {.name = "compare",
      .answers =
          "trajectories of several integrators on one model and their differences to the reference solution",
-     .accepted = takes::reference | takes::rtol | takes::strict,
+     .accepted = takes::reference | takes::rtol | takes::strict | takes::shard,
      .keys = {"max_r", "end_r", "max_A", "end_A", "max_v", "end_v", "max_omega", "end_omega"},
      .files = {"compare.csv", "compare.png"},
      .run = compare});

@@ -296,7 +296,7 @@ void convergence(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "convergence",
      .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-     .accepted = takes::reference | takes::all | takes::strict,
+     .accepted = takes::reference | takes::all | takes::strict | takes::shard,
      .keys = study.keys(),
      .files = {"convergence-position.png", "convergence-loads.png", "convergence-PROBLEM.png"},
      .run = convergence});

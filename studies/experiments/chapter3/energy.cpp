@@ -179,7 +179,7 @@ const bool registered = io::Registry<Study>::add(
     {.name = "energy",
      .answers = "energy over time: its drift in conservative models (Fig. 3.5), its balance with the work in "
                 "damped and driven ones",
-     .accepted = takes::strict,
+     .accepted = takes::strict | takes::shard,
      .keys = {"end_drift", "max_drift", "max_drift_relative", "end_balance", "max_balance",
               "max_balance_relative"},
      .files = {"energy.csv", "energy-PROBLEM.png"},

@@ -129,7 +129,7 @@ void iterations(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "iterations",
      .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
-     .accepted = takes::strict,
+     .accepted = takes::strict | takes::shard,
      .keys = {"iterations", "max_iterations"},
      .files = {"iterations.csv", "iterations-PROBLEM.png"},
      .run = iterations});

@@ -121,7 +121,7 @@ const bool registered = io::Registry<Study>::add(
     {.name = "snapshots",
      .answers = "pictures of models at four times: bodies, joints, paths (Fig. 3.3); bodies and constraints "
                 "(Table 3.1)",
-     .accepted = takes::strict,
+     .accepted = takes::strict | takes::shard,
      .keys = {"bodies", "CD", "DP1", "DP2", "D", "other_rows", "rows", "degrees_of_freedom"},
      .files = {"poses.csv", "contacts.csv", "shapes.json", "snapshots-PROBLEM.png"},
      .run = draw_snapshots});

@@ -148,7 +148,8 @@ void friction_experiments(StudyContext& s)
              [&](io::Archive& a, long k) {
                  const auto& [c, r] = jobs[k];
                  c->curves[r].transfer(a), a.list(c->failures[r]), c->snapshots[r].transfer(a);
-             });
+             },
+             [&](long k, const std::string& how) { jobs[k].first->failures[jobs[k].second] = how; });
 
     std::vector<Checked> checks;
     std::vector<NamedCurve> named;
@@ -193,7 +194,7 @@ const bool registered = io::Registry<Study>::add(
      .answers =
          "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
          "4.14-4.18, Table 4.7)",
-     .accepted = takes::against | takes::check | takes::vtk,
+     .accepted = takes::against | takes::check | takes::vtk | takes::shard,
      .lacking = lacks::models | lacks::steps | lacks::end,
      .keys = {"difference"},
      .files = {"EXPERIMENT.csv", "EXPERIMENT-poses.csv", "EXPERIMENT-contacts.csv", "EXPERIMENT-shapes.json",

@@ -47,7 +47,7 @@ const std::vector<InclineGrid> grids = {{"published", range(40, 120, 1, 200), ra
 struct InclineCell {
     double eta = 0, angle = 0;  ///< [1, degrees]
     double published = std::nan("");
-    int state = -1;
+    int state = -1;  ///< -1: the process of the cell was ended
     /// Velocity of the centre and R times the angular velocity at the end, positive up the slope [m/s]
     double v = 0, R_omega = 0;
 
@@ -102,7 +102,7 @@ std::vector<Boundaries> boundaries(const StateMap& map)
     const auto boundary = [&](size_t e, int most) {
         double at = std::nan("");
         for (size_t a = 0; a + 1 < angle.size(); ++a)
-            if (map.at(e, a).state <= most && map.at(e, a + 1).state > most)
+            if (map.at(e, a).state >= 0 && map.at(e, a).state <= most && map.at(e, a + 1).state > most)
                 at = 0.5 * (angle[a] + angle[a + 1]);
         return at;
     };
@@ -189,7 +189,7 @@ Criterion compare(StudyContext& s, const StateMap& map)
     for (long e = 0; e < rows; ++e)
         for (long a = 0; a < columns; ++a) {
             const InclineCell& cell = map.at(e, a);
-            if (!(cell.published >= 0 && cell.published <= 3)) continue;
+            if (!(cell.published >= 0 && cell.published <= 3) || cell.state < 0) continue;
             ++compared;
             ++count[static_cast<size_t>(cell.published)][cell.state];
             same += cell.published == cell.state;
@@ -281,7 +281,7 @@ const bool registered = io::Registry<Study>::add(
      .answers = "final state of a sphere pushed up an incline, over slope and rolling resistance (Fig. "
                 "4.13); default "
                 "preset: dissertation",
-     .accepted = takes::preset | takes::against | takes::grid | takes::check,
+     .accepted = takes::preset | takes::against | takes::grid | takes::check | takes::shard,
      .lacking = lacks::problem | lacks::models,
      .keys = {"agreement", "far", "rest_limit", "rolling_limit_least", "rolling_limit_most", "slip_from"},
      .files = {"incline-sweep.png"},

@@ -49,6 +49,7 @@ struct StackCell {
     bool found = false;                         ///< the critical mass is within the bounds of the bisection
     double published = std::nan("");
     int runs = 0, undecided = 0;
+    bool lost = false;  ///< the process of the cell was ended
 
     void transfer(io::Archive& a)
     {
@@ -90,7 +91,8 @@ void bisect(StackCell& cell, double h, double end)
 std::string collapse_mode(const StackCell& cell)
 {
     const StackOutcome& f = cell.at_critical;
-    return !cell.found           ? "-"
+    return cell.lost             ? "killed"
+           : !cell.found         ? "-"
            : f.rolls && f.slides ? "both"
            : f.rolls             ? "rolling"
            : f.slides            ? "sliding"
@@ -283,7 +285,8 @@ void stacking(StudyContext& s)
     };
     s.pool(cells.size() + of_figures.size() + s.options.check)
         .run([&](long k) { bisect(cell(k), &cell(k) == &refined ? o.h / refinement : o.h, o.end); },
-             [&](io::Archive& a, long k) { cell(k).transfer(a); });
+             [&](io::Archive& a, long k) { cell(k).transfer(a); },
+             [&](long k, const std::string&) { cell(k).lost = true; });
 
     const std::vector<MassCurve> curves = curves_of(cells, o.grid);
     s.text << fmt::format(
@@ -326,7 +329,7 @@ const bool registered = io::Registry<Study>::add(
      .answers =
          "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
          "dissertation",
-     .accepted = takes::preset | takes::against | takes::grid | takes::check,
+     .accepted = takes::preset | takes::against | takes::grid | takes::check | takes::shard,
      .lacking = lacks::problem | lacks::models,
      .keys = keys(),
      .files = {"poses.csv", "contacts.csv", "shapes.json", "stacking.png", "stacking-snapshots.png"},

@@ -149,7 +149,7 @@ void evolving_order(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "evolving-order",
      .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
-     .accepted = takes::reference | takes::check | takes::normal_rows | takes::strict,
+     .accepted = takes::reference | takes::check | takes::normal_rows | takes::strict | takes::shard,
      .keys = study.keys(),
      .files = {"evolving-order-PROBLEM.png"},
      .run = evolving_order});

@@ -313,7 +313,7 @@ void sweep(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "sweep",
      .answers = "one model over a grid of values of its entries (--sweep): end states, energy, largest loads",
-     .accepted = takes::sweep | takes::rtol | takes::strict,
+     .accepted = takes::sweep | takes::rtol | takes::strict | takes::shard,
      .keys = {"observable_end", "observable_min", "observable_max", "energy_drift", "constraint_norm",
               "max_force", "max_torque"},
      .files = {"sweep.png"},

@@ -16,8 +16,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> commands = {"run",   "cosim",    "check", "models", "integrators", "schema",
-                                           "study", "granular", "plot",  "info",   "new",         "help"};
+const std::vector<std::string> commands = {"run",    "cosim", "check",   "models",   "integrators",
+                                           "schema", "study", "collect", "granular", "plot",
+                                           "info",   "new",   "help"};
 
 /// All help texts, by the call that prints them
 std::vector<std::pair<std::string, std::string>> help_texts(const Scratch& in)
@@ -113,6 +114,7 @@ TEST_CASE("the help of a study has its options, its keys and its files, and no o
         CHECK_THAT(text, Contains("hilda study " + study.name));
         const std::set<std::string> options = matches(text, "\\n  (?:-h,)?(--[a-z-]+)");
         CHECK(options.contains("--reference") == ((study.accepted & studies::takes::reference) != 0));
+        CHECK(options.contains("--shard") == ((study.accepted & studies::takes::shard) != 0));
         CHECK(options.contains("--seed") == (study.name == "scaling"));
         CHECK(options.contains("--rtol") == (study.name == "compare" || study.name == "sweep"));
         CHECK(options.contains("--integrator") == ((study.lacking & studies::lacks::models) == 0));

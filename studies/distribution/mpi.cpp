@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The module hilda-mpi.so: a Communicator by MPI.
+
+#include "studies/distribution/communicator.hpp"
+
+#include "io/error.hpp"
+
+#include <mpi.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <climits>
+#include <csignal>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+namespace hilda::studies {
+
+namespace {
+
+constexpr int tag = 1;
+
+/// The process of a rank
+struct Place {
+    std::array<char, 64> machine{};
+    pid_t process = 0;
+};
+
+class Mpi final : public Communicator {
+public:
+    Mpi()
+    {
+        int provided = 0;
+        if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS)
+            throw io::NotAvailable("MPI cannot be initialised");
+        // The end of another rank must not end this one.
+        MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+        MPI_Comm_rank(MPI_COMM_WORLD, &own_rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+        Place here;
+        gethostname(here.machine.data(), here.machine.size() - 1);
+        here.process = getpid();
+        places.resize(static_cast<size_t>(ranks));
+        MPI_Allgather(&here, sizeof here, MPI_BYTE, places.data(), sizeof here, MPI_BYTE, MPI_COMM_WORLD);
+    }
+    ~Mpi() override
+    {
+        // MPI_Finalize waits for all ranks. Open MPI does not finalise after the end of one of them.
+        for (int r = 0; r < ranks; ++r)
+            if (is_gone(r)) return;
+        MPI_Finalize();
+    }
+    Mpi(const Mpi&) = delete;
+    Mpi& operator=(const Mpi&) = delete;
+
+    int rank() const override { return own_rank; }
+    int size() const override { return ranks; }
+
+    void send(int to, const std::string& message) override
+    {
+        if (message.size() > INT_MAX) throw io::IoError("MPI: the result of a run has more than 2 GiB");
+        MPI_Request request = MPI_REQUEST_NULL;
+        if (is_gone(to) || MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to, tag,
+                                     MPI_COMM_WORLD, &request) != MPI_SUCCESS)
+            return;
+        int sent = 0;
+        while (MPI_Test(&request, &sent, MPI_STATUS_IGNORE) == MPI_SUCCESS && sent == 0) {
+            if (is_gone(to)) {
+                MPI_Request_free(&request);
+                return;
+            }
+            std::this_thread::sleep_for(std::chrono::microseconds(100));
+        }
+    }
+
+    std::optional<Received> receive() override
+    {
+        int is_there = 0, bytes = 0;
+        MPI_Status status{};
+        if (MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &is_there, &status) != MPI_SUCCESS ||
+            is_there == 0)
+            return std::nullopt;
+        MPI_Get_count(&status, MPI_BYTE, &bytes);
+        Received received{.from = status.MPI_SOURCE,
+                          .message = std::string(static_cast<size_t>(bytes), '\0')};
+        if (MPI_Recv(received.message.data(), bytes, MPI_BYTE, received.from, tag, MPI_COMM_WORLD,
+                     MPI_STATUS_IGNORE) != MPI_SUCCESS)
+            return std::nullopt;
+        return received;
+    }
+
+    bool is_gone(int rank) const override
+    {
+        const Place &here = places[static_cast<size_t>(own_rank)], &there = places[static_cast<size_t>(rank)];
+        return here.machine == there.machine && kill(there.process, 0) != 0 && errno == ESRCH;
+    }
+
+private:
+    int own_rank = 0, ranks = 1;
+    std::vector<Place> places;
+};
+
+}  // namespace
+
+}  // namespace hilda::studies
+
+extern "C" void hilda_mpi(std::unique_ptr<hilda::studies::Communicator>& to)
+{
+    to = std::make_unique<hilda::studies::Mpi>();
+}

@@ -59,7 +59,7 @@ const std::map<std::string, std::set<std::string>> granular_folders = {
     {"cosim", {"case", "core", "running", "stages", "world"}},
     {"program",
      {"backend", "case", "core", "cosim", "fields", "reading", "running", "stages", "validations", "world"}},
-    {"benchmarks", {"mesh", "world"}},
+    {"benchmarks", {"cosim", "mesh", "running", "world"}},
 };
 const std::pair<std::string, std::string> mutual_folders = {"backend", "core"};
 
@@ -111,6 +111,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "experiments/chapter4/friction",
       "experiments/chapter5",
       "experiments/chapter7",
+      "experiments/chapter7/rigs",
       "experiments/chapter8",
       "experiments/sweep",
       "framework",

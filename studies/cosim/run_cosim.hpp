@@ -10,7 +10,7 @@ namespace hilda::studies {
 struct CosimOptions {
     std::string file;
     std::string transport = "in-process";  ///< or pipe: the grains are a process of hilda-granular
-    RunOptions run;  ///< output, checkpoints and switches; the model and its step are those of the file
+    RunOptions run = {};  ///< output, checkpoints and switches; the model and its step are those of the file
 };
 
 /// Simulates both sides, writes the results of the mechanism to the output directory and those of the grains

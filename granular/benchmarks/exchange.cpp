@@ -72,12 +72,12 @@ std::unique_ptr<Exchange> remote(const std::string& folder, long tools)
     if (pipe(to.data()) != 0 || pipe(from.data()) != 0) throw io::IoError("no pipe");
     if (fork() == 0) {
         close(to[1]), close(from[0]);
-        Channel channel(to[0], from[1], "the benchmark");
+        PipeChannel channel(to[0], from[1], "the benchmark");
         serve(channel, [&](const std::vector<std::string>&) { return local(folder, tools); });
         _exit(0);
     }
     close(to[0]), close(from[1]);
-    return std::make_unique<RemoteExchange>(std::make_unique<Channel>(from[0], to[1], "the grains"),
+    return std::make_unique<RemoteExchange>(std::make_unique<PipeChannel>(from[0], to[1], "the grains"),
                                             names_of(tools));
 }
 

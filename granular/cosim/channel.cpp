@@ -13,19 +13,19 @@ namespace hilda::granular {
 
 static_assert(std::endian::native == std::endian::little);
 
-Channel::Channel(int in, int out, std::string peer) : in(in), out(out), peer(std::move(peer))
+PipeChannel::PipeChannel(int in, int out, std::string peer) : in(in), out(out), peer(std::move(peer))
 {
     // A write to a process that has ended is an error, not a signal.
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-Channel::~Channel()
+PipeChannel::~PipeChannel()
 {
     close(in);
     if (out != in) close(out);
 }
 
-void Channel::send(const std::string& message)
+void PipeChannel::send(const std::string& message)
 {
     const std::uint64_t length = message.size();
     std::string all(sizeof length, '\0');
@@ -39,7 +39,7 @@ void Channel::send(const std::string& message)
     }
 }
 
-std::string Channel::receive()
+std::string PipeChannel::receive()
 {
     constexpr std::uint64_t most = std::uint64_t{1} << 30;
     std::uint64_t length = 0;
@@ -52,7 +52,7 @@ std::string Channel::receive()
     return message;
 }
 
-void Channel::read(void* to, std::size_t count)
+void PipeChannel::read(void* to, std::size_t count)
 {
     char* at = static_cast<char*>(to);
     while (count > 0) {

@@ -15,19 +15,28 @@ public:
     explicit ExchangeLost(const std::string& what) : NumericalFailure("exchange_lost", what) {}
 };
 
-/// Sends and receives messages over two file descriptors, which it closes. A message is its length in eight
-/// bytes, little endian, and its content.
+/// Sends and receives messages. The functions throw ExchangeLost.
 class Channel {
 public:
-    /// `peer`: name of the other side in messages
-    Channel(int in, int out, std::string peer);
+    Channel() = default;
     Channel(const Channel&) = delete;
     Channel& operator=(const Channel&) = delete;
-    ~Channel();
+    virtual ~Channel() = default;
 
-    /// Throws ExchangeLost.
-    void send(const std::string& message);
-    std::string receive();
+    virtual void send(const std::string& message) = 0;
+    virtual std::string receive() = 0;
+};
+
+/// A channel over two file descriptors, which it closes. A message is its length in eight bytes, little
+/// endian, and its content.
+class PipeChannel final : public Channel {
+public:
+    /// `peer`: name of the other side in messages
+    PipeChannel(int in, int out, std::string peer);
+    ~PipeChannel() override;
+
+    void send(const std::string& message) override;
+    std::string receive() override;
 
 private:
     void read(void* to, std::size_t count);

@@ -94,7 +94,7 @@ int exchange(RunOptions o, Continuation read)
 {
     std::signal(SIGINT, SIG_IGN), std::signal(SIGHUP, SIG_IGN), std::signal(SIGTERM, SIG_IGN);
     o.quiet = true;
-    Channel channel(STDIN_FILENO, STDOUT_FILENO, "hilda cosim");
+    PipeChannel channel(STDIN_FILENO, STDOUT_FILENO, "hilda cosim");
     try {
         serve(channel, [&](const std::vector<std::string>& names) -> std::unique_ptr<Exchange> {
             return std::make_unique<Soil>(o, std::move(read), names);

@@ -35,7 +35,7 @@ std::unique_ptr<granular::RemoteExchange> start_grains(const std::vector<std::st
         _exit(127);
     }
     close(to_grains[0]), close(from_grains[1]);
-    auto channel = std::make_unique<granular::Channel>(from_grains[0], to_grains[1], "hilda-granular");
+    auto channel = std::make_unique<granular::PipeChannel>(from_grains[0], to_grains[1], "hilda-granular");
     try {
         return std::make_unique<granular::RemoteExchange>(std::move(channel), names);
     } catch (const granular::ExchangeLost&) {

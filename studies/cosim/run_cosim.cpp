@@ -8,9 +8,13 @@
 #include "studies/cosim/grain_coupling.hpp"
 #include "studies/cosim/grain_process.hpp"
 #include "studies/cosim/local_grains.hpp"
+#include "studies/cosim/rank_channel.hpp"
 #include "studies/running/single_run.hpp"
 
+#include <fmt/format.h>
 #include <omp.h>
+
+#include <csignal>
 #include <iostream>
 
 namespace hilda::studies {
@@ -54,18 +58,54 @@ std::unique_ptr<granular::Exchange> grains_of_process(const CosimFile& file, dou
     return start_grains(arguments, boundaries(file));
 }
 
+/// The grains of rank 1, for rank 0
+std::unique_ptr<granular::Exchange> grains_of_rank(const CosimFile& file,
+                                                   const std::shared_ptr<Communicator>& all)
+{
+    return std::make_unique<granular::RemoteExchange>(std::make_unique<RankChannel>(all, 1),
+                                                      boundaries(file));
+}
+
+/// Rank 1: the grains. Rank 0 saves and ends the run after an interruption, and reports errors.
+int serve_grains(const CosimFile& file, double end, const RunOptions& o,
+                 const std::shared_ptr<Communicator>& all)
+{
+    std::signal(SIGINT, SIG_IGN), std::signal(SIGHUP, SIG_IGN), std::signal(SIGTERM, SIG_IGN);
+    RankChannel channel(all, 0);
+    try {
+        granular::serve(channel, [&](const std::vector<std::string>&) { return grains_here(file, end, o); });
+    } catch (const RankClosed&) {  // rank 0 reports its error
+    }
+    return io::exit_code::done;
+}
+
+/// The ranks of the transport mpi. Throws io::UsageError without two ranks.
+std::shared_ptr<Communicator> two_ranks()
+{
+    if (const int n = ranks_of_environment(); n != 2)
+        throw io::UsageError(
+            fmt::format("cosim: --transport mpi needs two ranks, mpirun -n 2 hilda cosim ..., got {}", n));
+    return make_communicator();
+}
+
 }  // namespace
 
-int run_cosim(const CosimOptions& options)
+namespace {
+
+int run_rank(const CosimOptions& options)
 {
     RunOptions o = options.run;
+    const bool ranks = options.transport == "mpi", first = !ranks || rank_of_environment() == 0;
+    const std::shared_ptr<Communicator> all = ranks ? two_ranks() : nullptr;
     const CosimFile file = read_cosim(options.file, o.set);
     o.set.clear();
     if (o.output.empty()) o.output = "out/" + file.name;
-    io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
     const double end = o.end.value_or(file.end);
-    GrainCoupling coupling(
-        file, options.transport == "pipe" ? grains_of_process(file, end, o) : grains_here(file, end, o));
+    if (!first) return serve_grains(file, end, o, all);
+    io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
+    GrainCoupling coupling(file, ranks                         ? grains_of_rank(file, all)
+                                 : options.transport == "pipe" ? grains_of_process(file, end, o)
+                                                               : grains_here(file, end, o));
     o.model = file.model, o.coupling = &coupling;
     o.step = coupling.H(), o.end = end;
     if (file.interval) o.interval = file.interval;
@@ -76,6 +116,20 @@ int run_cosim(const CosimOptions& options)
     else if (!o.quiet)
         print(result, std::cout);
     return result.exit_code;
+}
+
+}  // namespace
+
+int run_cosim(const CosimOptions& options)
+{
+    if (options.transport != "mpi" || rank_of_environment() == 0) return run_rank(options);
+    try {
+        return run_rank(options);
+    } catch (const io::Failure& e) {  // rank 0 reports the same error of the files
+        return e.code;
+    } catch (const io::InvalidInput&) {
+        return io::exit_code::invalid_input;
+    }
 }
 
 }  // namespace hilda::studies

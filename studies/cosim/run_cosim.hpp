@@ -9,7 +9,8 @@ namespace hilda::studies {
 
 struct CosimOptions {
     std::string file;
-    std::string transport = "in-process";  ///< or pipe: the grains are a process of hilda-granular
+    /// in-process; pipe: the grains are a process of hilda-granular; mpi: they are rank 1 of mpirun
+    std::string transport = "in-process";
     RunOptions run = {};  ///< output, checkpoints and switches; the model and its step are those of the file
 };
 

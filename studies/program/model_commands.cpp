@@ -106,12 +106,10 @@ void add_cosim_options(CLI::App& c, CosimOptions& to)
           assign(o.checkpoint, nonnegative_number));
     value(
         c, "--transport", "NAME",
-        "in-process: the grains are computed by this program; pipe: by a process of hilda-granular; default: "
-        "in-process",
+        "in-process: the grains are computed by this program; pipe: by a process of hilda-granular; mpi: by "
+        "rank 1 of mpirun -n 2; default: in-process",
         [&to](const std::string& option, const std::string& text) {
-            if (text != "in-process" && text != "pipe")
-                throw io::UsageError(option + ": must be in-process or pipe, got '" + text + "'");
-            to.transport = text;
+            to.transport = io::one_of(option, text, std::vector<std::string>{"in-process", "pipe", "mpi"});
         });
     value(c, "--threads", "N", "threads of the grains; default: 1", assign(o.threads, positive_count));
     io::add_sink_options<RunSetup>(c, o.outputs);

@@ -12,6 +12,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -231,6 +232,47 @@ def one_result(runs):
     expect(half == whole, f"a later end: {[name for name in whole if half.get(name) != whole[name]]} differ")
 
 
+def ranks(runs):
+    """The grains as rank 1 of mpirun: the same files, also after a rank was killed"""
+    mpirun = shutil.which("mpirun")
+    if mpirun is None or not (pathlib.Path(runs.hilda).parent / "hilda-mpi.so").exists():
+        print("co-simulation: not tested with MPI")
+        return
+    runs.files("ranks", dict(COSIM, substeps=4, end=0.03))
+    runs.finish("ranks", "--output", "ranks/whole")
+    whole = content(runs, "ranks/whole")
+
+    def start(output, *arguments, count=2, more=()):
+        return subprocess.Popen([mpirun, "--allow-run-as-root", "--oversubscribe", *more, "-n", str(count), runs.hilda, "cosim", "ranks/cosim.json",
+                                 "--transport", "mpi", "--output", output, *arguments], cwd=runs.folder, text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE)
+
+    def finish(code, *arguments, **options):
+        process = start(*arguments, **options)
+        out, err = process.communicate(timeout=300)
+        expect(process.returncode == code, f"mpirun {arguments}: ended with {process.returncode}, not {code}: {out} {err}")
+        return err
+
+    finish(0, "ranks/mpi")
+    expect(content(runs, "ranks/mpi") == whole, "two ranks write the same files")
+    for which in 0, 1:
+        output = f"ranks/killed{which}"
+        process = start(output, "--checkpoint", "0.02")
+        while process.poll() is None and not (runs.folder / output / "checkpoint").exists():
+            time.sleep(1e-3)
+        for child in pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
+            if f"OMPI_COMM_WORLD_RANK={which}\0".encode() in pathlib.Path(f"/proc/{child}/environ").read_bytes():
+                os.kill(int(child), signal.SIGKILL)
+        process.communicate(timeout=300)
+        expect(process.returncode != 0, f"rank {which} was killed: {process.returncode}")
+        finish(0, output, "--resume")
+        expect(content(runs, output) == whole, f"a run whose rank {which} was killed continues")
+    expect("needs two ranks, mpirun -n 2 hilda cosim ..., got 3" in finish(2, "ranks/three", count=3), "three ranks are refused")
+    runs.files("ranks", dict(COSIM, pairs=[{"body": "ball", "boundary": "bal"}]))
+    err = finish(3, "ranks/wrong")
+    expect(err.count("tool 'bal': no boundary of the case has this name") == 1, err)
+
+
 def errors(runs):
     """Names, places, masses and steps that do not fit"""
     def cosim(name, message, code=3, case=None, model=None, **changes):
@@ -354,6 +396,7 @@ def main():
         momentum(runs)
         orders(runs)
         one_result(runs)
+        ranks(runs)
     print(f"co-simulation: the ball differs from a tool by {difference:.2g} m; momentum, orders, one result, errors")
 
 

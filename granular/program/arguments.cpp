@@ -68,16 +68,22 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     app.add_option(
            "CASE", o.run.file,
            "case file (JSON), name of a built-in case or of a validation, cases to list the built-in cases "
-           "or to write them as files, laws to list the force laws, or schema to print the JSON schema of "
-           "cases")
+           "or to write them as files, export to write a case for another program, laws to list the force "
+           "laws, or schema to print the JSON schema of cases")
         ->required()
         ->type_name("");
-    app.add_option("NAME", o.name, "after cases: the built-in case that is written; default: print the list")
+    app.add_option(
+           "NAME", o.name,
+           "after cases: the built-in case that is written; default: print the list; after export: the "
+           "case, as CASE")
         ->type_name("");
     value("--write", "PATH",
           "after cases: write the case to this file or folder, or without NAME all cases to this folder; "
           "default: stdout",
           assign(o.write_to, io::path));
+    app.add_flag("--lammps", o.lammps,
+                 "after export: write in.lammps and data.lammps to the output directory, by default "
+                 "out/NAME-lammps");
     value("--step", "H", "time step [s]; default: that of the case", positive(step));
     value("--end", "T", "end time [s]; default: that of the case", positive(end));
     value("--interval", "DT", "time between rows of run.csv [s]; default: that of the case, or end/1000",
@@ -143,9 +149,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         app.parse(argc, argv);
         refuse_extras(app);
         if (o.run.file != "cases") {
-            if (!o.name.empty()) throw io::UsageError("one argument too many: '" + o.name + "'");
+            if (!o.name.empty() && o.run.file != "export")
+                throw io::UsageError("one argument too many: '" + o.name + "'");
             if (!o.write_to.empty()) throw io::UsageError("--write: is valid after cases only");
         }
+        if (o.lammps && o.run.file != "export") throw io::UsageError("--lammps: is valid after export only");
         if (o.run.force && o.run.resume) throw io::UsageError("--force and --resume exclude each other");
         if (!every.empty() && !interval.empty())
             throw io::UsageError("--every is the old name of --interval; give only one of them");
@@ -168,8 +176,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         interval = every;  // the origin in messages is then --interval
         if (!o.run.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
-    const std::set<std::string> of_all = {"CASE",   "NAME",     "--write", "--threads", "--device",
-                                          "--full", "--strict", "--quiet", "--verbose"};
+    std::set<std::string> of_all = {"CASE",     "NAME",   "--write",  "--lammps", "--threads",
+                                    "--device", "--full", "--strict", "--quiet",  "--verbose"};
+    if (o.run.file == "export")
+        of_all.insert(
+            {"--set", "--seed", "--step", "--end", "--interval", "--output", "--force", "--allow-paths"});
     for (const CLI::Option* option : app.get_options())
         if (option->count() > 0 && !of_all.contains(option->get_name()) && o.case_only_option.empty())
             o.case_only_option = option->get_name();
@@ -179,7 +190,10 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         if (!given.empty())
             o.settings.push_back({std::string("/") + key + '=' + io::shortest(*io::number_in<double>(given)),
                                   std::string("--") + key + ' ' + given});
-    if (o.run.output.empty()) o.run.output = "out/" + std::filesystem::path(o.run.file).stem().string();
+    const bool exports = o.run.file == "export" && !o.name.empty();
+    if (o.run.output.empty())
+        o.run.output = "out/" + std::filesystem::path(exports ? o.name : o.run.file).stem().string() +
+                       (exports ? "-lammps" : "");
     o.command_line = argv[0];  // may be "hilda granular"
     if (argc > 1) o.command_line += ' ' + io::shell_quoted(argc - 1, argv + 1);
     return {};

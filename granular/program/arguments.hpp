@@ -11,7 +11,9 @@ namespace hilda::granular {
 struct Options {
     RunOptions run = {};
     std::string device_name = "cpu", command_line;
-    std::string name, write_to;  ///< of the command cases: a built-in case, and where it is written
+    std::string name;      ///< after the commands cases and export: a case
+    std::string write_to;  ///< of the command cases: where the case is written
+    bool lammps = false;   ///< of the command export: the format
     Device device = {};
     int threads = 1;
     std::vector<Setting> settings;  ///< changes of entries of the case

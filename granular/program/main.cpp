@@ -8,6 +8,7 @@
 #include "granular/cosim/soil.hpp"
 #include "granular/program/arguments.hpp"
 #include "granular/program/cases.hpp"
+#include "granular/program/export_lammps.hpp"
 #include "granular/program/laws.hpp"
 #include "granular/program/memory.hpp"
 #include "granular/program/provenance.hpp"
@@ -17,6 +18,7 @@
 #include "granular/running/run.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/message.hpp"
 #include "io/program.hpp"
 
 #include <omp.h>
@@ -75,7 +77,7 @@ std::string text_of_case(const std::string& word)
     }
 }
 
-/// The commands that print a text: cases, laws and schema
+/// The commands cases, laws and schema, which print a text
 void print_text(const Options& o)
 {
     if (o.run.file == "cases" && (!o.name.empty() || !o.write_to.empty()))
@@ -105,16 +107,40 @@ int exchange(RunOptions o, Continuation read)
     return io::exit_code::done;
 }
 
-int run_case(const Options& o)
+/// What the reader of this case gets from the options
+Environment environment_of(const Options& o, const std::string& file)
 {
     Environment here{.memory = available_memory(),
                      .lists_contacts = o.run.outputs.contains("--contacts"),
                      .device = o.device,
                      .settings = o.settings,
                      .seed = o.seed};
-    make_engine(o.device);  // reports a missing device before the case is read
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
-    if (!o.allow_paths) here.folder = folder_of(o.run.file);
+    if (!o.allow_paths) here.folder = folder_of(file);
+    return here;
+}
+
+/// The command export
+void export_case(const Options& o)
+{
+    if (o.name.empty()) throw io::UsageError("granular: export: NAME is required, the case");
+    if (!o.lammps) throw io::UsageError("granular: export: the format is required, --lammps");
+    make_engine(o.device);
+    const Case c = read_case(text_of_case(o.name), o.name, environment_of(o, o.name));
+    io::check_output_directory(o.run.output, o.run.force, "--force overwrites its files");
+    if (!o.run.quiet)
+        for (const std::string& notice : c.notices) io::warning(notice);
+    insert_particles(c);
+    export_lammps(c, o.run.output);
+    if (!o.run.quiet)
+        std::printf("%s: %zu particles and %zu boundaries for LAMMPS; %s\n", c.name.c_str(), c.world->count(),
+                    c.boundaries.size(), o.run.output.c_str());
+}
+
+int run_case(const Options& o)
+{
+    make_engine(o.device);  // reports a missing device before the case is read
+    const Environment here = environment_of(o, o.run.file);
     const std::string text = text_of_case(o.run.file);
     RunOptions options = o.run;
     options.provenance = provenance(o.command_line, o.threads, o.device_name);
@@ -130,8 +156,10 @@ int run_program(int argc, char** argv)
     omp_set_num_threads(o.threads);
     built_in_case(o.run.file);
     const Validation* const validation = find_validation(o.run.file);
+    const bool exports = o.run.file == "export" && !is_file(o.run.file);
     const bool command =
-        (o.run.file == "schema" || o.run.file == "laws" || o.run.file == "cases") && !is_file(o.run.file);
+        exports ||
+        ((o.run.file == "schema" || o.run.file == "laws" || o.run.file == "cases") && !is_file(o.run.file));
     if ((validation != nullptr || command) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " +
                              o.run.file + (command ? " is a command" : " is a validation"));
@@ -139,7 +167,7 @@ int run_program(int argc, char** argv)
         throw io::UsageError("granular: --full: is valid for validations only, but " + o.run.file +
                              " is a file");
     if (command) {
-        print_text(o);
+        exports ? export_case(o) : print_text(o);
         return io::exit_code::done;
     }
     try {

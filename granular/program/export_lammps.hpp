@@ -7,7 +7,7 @@
 ///     integrator velocity-verlet         fix nve/sphere: the same scheme. Both evaluate the contact forces
 ///                                        with the velocities of the middle of the step.
 ///     integrator symplectic-euler        fix nve/sphere: v_n of HILDA is that of the middle of the step
-///                                        before t_n. The trajectories differ by the first half kick, h/2 a(0).
+///                                        before t_n. The trajectories differ by the first half kick.
 ///     plane, box                         region plane, fix wall/gran/region
 ///     cylinder along x, y or z, sphere   region cylinder or sphere: R* = R/(1 + κ R) with the same κ
 ///     fixed                              fix freeze: m* is the mass of the other particle in both

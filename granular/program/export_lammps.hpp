@@ -16,8 +16,8 @@
 ///
 /// The particles are those of the first instant of a run, with all digits. Their ids in LAMMPS are one
 /// higher. What acts on the motion and has no counterpart is refused with its place in the case: other laws,
-/// motions, meshes, finite surfaces, tools, clumps, replicas, insertions, stages, forces on particles. Fields,
-/// lists of contacts and groups are outputs and are left out.
+/// motions, meshes, finite surfaces, tools, clumps, replicas, insertions, stages, forces on particles.
+/// Fields, lists of contacts and groups are outputs and are left out.
 ///
 /// LAMMPS writes the contact forces of an instant with the velocities of the middle of the step before it,
 /// run.csv has those with the velocities of the instant: a difference of first order in h.

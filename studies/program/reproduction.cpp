@@ -299,6 +299,10 @@ std::vector<Reproduction> chapters_7_and_8()
                "a narrower bed, four slips instead of nine, one bed instead of four, and no cylinder with "
                "end faces and "
                "no tyre"),
+        grains("tyre", {"7.20"}, "Single-wheel rig with a tyre on grains",
+               "Pull, driving torque and sinkage over the imposed slip, and the free slip under a torque, in "
+               "co-simulation.",
+               "a shorter and narrower bed, half the duration, and four slips instead of eight"),
         {.name = "contact-methods",
          .chapter = 8,
          .figures = {"Sec. 8.2"},

@@ -235,8 +235,10 @@ def one_result(runs):
 def ranks(runs):
     """The grains as rank 1 of mpirun: the same files, also after a rank was killed"""
     mpirun = shutil.which("mpirun")
-    if mpirun is None or not (pathlib.Path(runs.hilda).parent / "hilda-mpi.so").exists():
-        print("co-simulation: not tested with MPI")
+    # Containers without a network interface forbid mpirun to start processes.
+    if (mpirun is None or not (pathlib.Path(runs.hilda).parent / "hilda-mpi.so").exists() or
+            subprocess.run([mpirun, "--allow-run-as-root", "--oversubscribe", "-n", "2", "true"], capture_output=True, timeout=60, check=False).returncode != 0):
+        print("left out: co-simulation on two ranks of mpirun")
         return
     runs.files("ranks", dict(COSIM, substeps=4, end=0.03))
     runs.finish("ranks", "--output", "ranks/whole")

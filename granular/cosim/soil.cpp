@@ -99,11 +99,21 @@ void Soil::advance(const std::vector<ToolMotion>& motions, long steps, std::vect
 
 std::vector<ToolStiffness> Soil::stiffness()
 {
+    const std::vector<Boundary>& all_boundaries = world().all_boundaries();
+    if (single.empty())
+        for (const int k : number) {
+            double largest = 0;  // of the body and of its parts
+            for (int j = 0; j < static_cast<int>(all_boundaries.size()); ++j) {
+                const Boundary& b = all_boundaries[static_cast<std::size_t>(j)];
+                if ((j == k || b.body == k) && b.shape != Boundary::Shape::none)
+                    largest = std::max(largest, world().contact_stiffness(j, ToolStiffness::single_overlap));
+            }
+            single.push_back(largest);
+        }
     const std::vector<double> present = world().boundary_stiffness();
     std::vector<ToolStiffness> of;
-    for (const int k : number)
-        of.push_back({.present = present[static_cast<std::size_t>(k)],
-                      .single = world().contact_stiffness(k, ToolStiffness::single_overlap)});
+    for (std::size_t k = 0; k < number.size(); ++k)
+        of.push_back({.present = present[static_cast<std::size_t>(number[k])], .single = single[k]});
     return of;
 }
 

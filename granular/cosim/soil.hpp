@@ -39,7 +39,8 @@ private:
     double step;         ///< [s]
     std::unique_ptr<SteppedRun> run;
     std::vector<Tool> all;
-    std::vector<int> number;  ///< of the boundary of each tool
+    std::vector<int> number;     ///< of the boundary of each tool
+    std::vector<double> single;  ///< ToolStiffness::single of each tool, once it is known
     std::vector<ToolBody> body;
     std::vector<EulerParameters<double>> frame;  ///< Boundary::p of each tool at the beginning of a step
 };

@@ -223,6 +223,8 @@ private:
                               number = std::to_string(k);
             const Boundary& b = w.all_boundaries()[k];
             const std::string at = region(b, pointer);
+            if (c.boundaries[k].find('$') != std::string::npos)
+                refuse(pointer + "/name", "the $ of a name, which begins a variable in LAMMPS,");
             if (std::find(c.moving.begin(), c.moving.end(), static_cast<int>(k)) != c.moving.end())
                 refuse(pointer, "a boundary that moves");
             text += "\n# wall" + number + ": " + io::in_quotes(c.boundaries[k]) + "\nregion          wall" +

@@ -47,7 +47,7 @@ std::vector<std::string> to_text(const PairInfo& p)
     const std::string mass =
         std::isfinite(p.effective_mass)
             ? fmt::format("mass {:.6g} kg, effective {:.6g} kg", p.mass, p.effective_mass)
-            : fmt::format("mass {:.6g} kg, its motion is prescribed", p.mass);
+            : fmt::format("mass {:.6g} kg, no force moves its centre of mass", p.mass);
     std::vector<std::string> all = {fmt::format("boundary '{}', {}", p.boundary, mass)};
     all.push_back(p.K.present > 0
                       ? fmt::format("contacts at the start have {:.3g} N/m: stable up to H = {:.3g} s",

@@ -16,7 +16,9 @@ namespace hilda::studies {
 ///     1/λ_max(Y),     r̈ = Y F     from the saddle system with the force F alone
 ///
 /// It is the mass of a free body, and infinite if the constraints and drivers prescribe the motion of the
-/// centre. Throws lie::SingularMatrix.
+/// centre. A force beside the centre of mass also turns the body and accelerates a smaller mass.
+///
+/// Throws lie::SingularMatrix.
 double effective_mass(const lie::System& system, const lie::State& x, int body);
 
 }  // namespace hilda::studies

@@ -11,7 +11,7 @@ RankChannel::~RankChannel()
 {
     try {
         all->send(peer, "");
-    } catch (const io::Failure&) {  // the other side asks whether this process is there
+    } catch (const io::Failure&) {  // the other side tests whether this process exists
     }
 }
 

@@ -16,11 +16,11 @@ public:
     using ExchangeLost::ExchangeLost;
 };
 
-/// A channel to another rank. It waits actively, because an exchange takes microseconds. Its destructor tells
-/// the other side, whose receive() throws RankClosed then.
+/// A channel to another rank. It waits actively, because an exchange takes microseconds. Its destructor
+/// notifies the other side, whose receive() throws RankClosed then.
 class RankChannel final : public granular::Channel {
 public:
-    RankChannel(std::shared_ptr<Communicator> communicator, int peer)
+    RankChannel(std::unique_ptr<Communicator> communicator, int peer)
         : all(std::move(communicator)), peer(peer)
     {}
 
@@ -32,7 +32,7 @@ public:
 private:
     std::string lost() const;
 
-    std::shared_ptr<Communicator> all;
+    std::unique_ptr<Communicator> all;
     int peer;
 };
 

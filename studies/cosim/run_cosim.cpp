@@ -58,20 +58,10 @@ std::unique_ptr<granular::Exchange> grains_of_process(const CosimFile& file, dou
     return start_grains(arguments, boundaries(file));
 }
 
-/// The grains of rank 1, for rank 0
-std::unique_ptr<granular::Exchange> grains_of_rank(const CosimFile& file,
-                                                   const std::shared_ptr<Communicator>& all)
-{
-    return std::make_unique<granular::RemoteExchange>(std::make_unique<RankChannel>(all, 1),
-                                                      boundaries(file));
-}
-
 /// Rank 1: the grains. Rank 0 saves and ends the run after an interruption, and reports errors.
-int serve_grains(const CosimFile& file, double end, const RunOptions& o,
-                 const std::shared_ptr<Communicator>& all)
+int serve_grains(const CosimFile& file, double end, const RunOptions& o, granular::Channel& channel)
 {
     std::signal(SIGINT, SIG_IGN), std::signal(SIGHUP, SIG_IGN), std::signal(SIGTERM, SIG_IGN);
-    RankChannel channel(all, 0);
     try {
         granular::serve(channel, [&](const std::vector<std::string>&) { return grains_here(file, end, o); });
     } catch (const RankClosed&) {  // rank 0 reports its error
@@ -79,33 +69,33 @@ int serve_grains(const CosimFile& file, double end, const RunOptions& o,
     return io::exit_code::done;
 }
 
-/// The ranks of the transport mpi. Throws io::UsageError without two ranks.
-std::shared_ptr<Communicator> two_ranks()
+/// The channel of the transport mpi to the other rank. Throws io::UsageError without two ranks.
+std::unique_ptr<granular::Channel> channel_of_ranks()
 {
     if (const int n = ranks_of_environment(); n != 2)
         throw io::UsageError(
             fmt::format("cosim: --transport mpi needs two ranks, mpirun -n 2 hilda cosim ..., got {}", n));
-    return make_communicator();
+    return std::make_unique<RankChannel>(make_communicator(), 1 - rank_of_environment());
 }
-
-}  // namespace
-
-namespace {
 
 int run_rank(const CosimOptions& options)
 {
     RunOptions o = options.run;
     const bool ranks = options.transport == "mpi", first = !ranks || rank_of_environment() == 0;
-    const std::shared_ptr<Communicator> all = ranks ? two_ranks() : nullptr;
+    // Before anything that can throw: its destructor ends the other rank.
+    std::unique_ptr<granular::Channel> channel = ranks ? channel_of_ranks() : nullptr;
     const CosimFile file = read_cosim(options.file, o.set);
     o.set.clear();
     if (o.output.empty()) o.output = "out/" + file.name;
     const double end = o.end.value_or(file.end);
-    if (!first) return serve_grains(file, end, o, all);
+    if (!first) return serve_grains(file, end, o, *channel);
     io::check_output_directory(o.output, o.force || o.resume, io::force_or_resume);
-    GrainCoupling coupling(file, ranks                         ? grains_of_rank(file, all)
-                                 : options.transport == "pipe" ? grains_of_process(file, end, o)
-                                                               : grains_here(file, end, o));
+    std::unique_ptr<granular::Exchange> grains;
+    if (ranks)
+        grains = std::make_unique<granular::RemoteExchange>(std::move(channel), boundaries(file));
+    else
+        grains = options.transport == "pipe" ? grains_of_process(file, end, o) : grains_here(file, end, o);
+    GrainCoupling coupling(file, std::move(grains));
     o.model = file.model, o.coupling = &coupling;
     o.step = coupling.H(), o.end = end;
     if (file.interval) o.interval = file.interval;

@@ -25,6 +25,7 @@ public:
     virtual std::optional<Received> receive() = 0;
     /// Whether the process of a rank has ended. Known for ranks on the same machine only; false for others.
     virtual bool is_gone(int rank) const = 0;
+    virtual bool is_on_this_machine(int rank) const = 0;
 };
 
 /// Number of ranks and number of this rank according to the environment of Open MPI; 1 and 0 without mpirun

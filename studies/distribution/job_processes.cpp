@@ -109,15 +109,19 @@ void JobProcesses::start(long job)
 
 void JobProcesses::fork_child(Child& child)
 {
-    std::array<int, 2> jobs{}, results{};
+    std::array<int, 2> jobs{-1, -1}, results{-1, -1};
+    const auto fail = [&](const std::string& what) {
+        const std::string reason = std::strerror(errno);
+        for (const int descriptor : {jobs[0], jobs[1], results[0], results[1]})
+            if (descriptor >= 0) close(descriptor);
+        throw io::IoError(what + reason);
+    };
     if (pipe2(jobs.data(), O_CLOEXEC) != 0 || pipe2(results.data(), O_CLOEXEC) != 0)
-        throw io::IoError(std::string("a process for a run: no pipe: ") + std::strerror(errno));
+        fail("a process for a run: no pipe: ");
     std::cout.flush();
-    const pid_t parent = getpid();
-    child.process = fork();
-    if (child.process < 0)
-        throw io::IoError(std::string("a process for a run cannot be started: ") + std::strerror(errno));
-    if (child.process == 0) {
+    const pid_t parent = getpid(), process = fork();
+    if (process < 0) fail("a process for a run cannot be started: ");
+    if (process == 0) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent) _exit(1);
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
@@ -128,6 +132,7 @@ void JobProcesses::fork_child(Child& child)
         serve(jobs[0], results[1]);
     }
     close(jobs[0]), close(results[1]);
+    child.process = process;
     child.to = jobs[1], child.from = results[0];
 }
 
@@ -147,6 +152,8 @@ void JobProcesses::serve(int from, int to) const
             end.kind = JobEnd::threw, end.text = exception_text(failure, e.code, "", e.what());
         } catch (const std::exception& e) {
             end.kind = JobEnd::threw, end.text = exception_text(other, 0, "", e.what());
+        } catch (...) {
+            end.kind = JobEnd::threw, end.text = exception_text(other, 0, "", "an unknown exception");
         }
         const Header header{end.kind, end.text.size()};
         if (!write_all(to, &header, sizeof header) || !write_all(to, end.text.data(), end.text.size())) break;

@@ -62,18 +62,20 @@ public:
     void send(int to, const std::string& message) override
     {
         if (message.size() > INT_MAX) throw io::IoError("MPI: the result of a run has more than 2 GiB");
+        if (is_gone(to)) return;
         MPI_Request request = MPI_REQUEST_NULL;
-        if (is_gone(to) || MPI_Isend(message.data(), static_cast<int>(message.size()), MPI_BYTE, to, tag,
-                                     MPI_COMM_WORLD, &request) != MPI_SUCCESS)
-            return;
+        auto copy = std::make_unique<std::string>(message);
         int sent = 0;
-        while (MPI_Test(&request, &sent, MPI_STATUS_IGNORE) == MPI_SUCCESS && sent == 0) {
-            if (is_gone(to)) {
-                MPI_Request_free(&request);
-                return;
-            }
-            std::this_thread::sleep_for(std::chrono::microseconds(100));
+        bool failed = MPI_Isend(copy->data(), static_cast<int>(copy->size()), MPI_BYTE, to, tag,
+                                MPI_COMM_WORLD, &request) != MPI_SUCCESS;
+        while (!failed) {
+            failed = MPI_Test(&request, &sent, MPI_STATUS_IGNORE) != MPI_SUCCESS;
+            if (sent != 0) return;
+            failed = failed || is_gone(to);
+            if (!failed) std::this_thread::sleep_for(std::chrono::microseconds(100));
         }
+        if (request != MPI_REQUEST_NULL) MPI_Request_free(&request);
+        not_sent.push_back(std::move(copy));  // MPI may still use it
     }
 
     std::optional<Received> receive() override
@@ -94,13 +96,18 @@ public:
 
     bool is_gone(int rank) const override
     {
-        const Place &here = places[static_cast<size_t>(own_rank)], &there = places[static_cast<size_t>(rank)];
-        return here.machine == there.machine && kill(there.process, 0) != 0 && errno == ESRCH;
+        return is_on_this_machine(rank) && kill(places[static_cast<size_t>(rank)].process, 0) != 0 &&
+               errno == ESRCH;
+    }
+    bool is_on_this_machine(int rank) const override
+    {
+        return places[static_cast<size_t>(rank)].machine == places[static_cast<size_t>(own_rank)].machine;
     }
 
 private:
     int own_rank = 0, ranks = 1;
     std::vector<Place> places;
+    std::vector<std::unique_ptr<std::string>> not_sent;
 };
 
 }  // namespace

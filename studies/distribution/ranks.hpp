@@ -16,7 +16,7 @@
 
 namespace hilda::studies {
 
-/// Rank 0 hands out the jobs, one at a time, and computes jobs as well. Each rank computes its jobs in
+/// Rank 0 distributes the jobs, one at a time, and computes jobs as well. Each rank computes its jobs in
 /// processes of their own (JobProcesses). The end of such a process costs its job. The end of a rank costs
 /// the jobs that it computes, if mpirun lets the other ranks continue (mpirun --enable-recovery).
 class Ranks {
@@ -35,28 +35,29 @@ public:
     void report_failure(const std::string& what) { all->send(0, failed + what); }
 
     using Compute = std::function<std::string(long)>;
-    /// On rank 0: calls ended(end) for the end of each job, in the order of the ends.
+    /// On rank 0: calls report(end) for the end of each job, in the order of the ends.
     void distribute(std::deque<long> jobs, int processes, const Compute& compute,
-                    const std::function<void(const JobEnd&)>& ended);
+                    const std::function<void(const JobEnd&)>& report);
     /// On the other ranks: computes jobs until rank 0 ends this rank.
     void work(int processes, const Compute& compute);
 
 private:
     // First letters of messages
-    static constexpr char ready = 'r', result = 'e', alive = 'a', failed = 'f',  // to rank 0
-        job = 'j', stop = 's';                                                   // from rank 0
+    static constexpr char ready = 'r', result = 'e', alive = 'a', failed = 'f', ended = 'q',  // to rank 0
+        job = 'j', stop = 's';                                                                // from rank 0
 
     using Clock = std::chrono::steady_clock;
     struct Other {
         std::set<long> jobs;  ///< that it computes
         int free = 0;         ///< jobs that it can start
         bool is_gone = false;
-        Clock::time_point heard = {};
+        Clock::time_point last_message = {};
     };
 
     void receive_from(Other& other, const Communicator::Received& received,
-                      const std::function<void(const JobEnd&)>& ended);
-    void look_for_lost(const std::function<void(const JobEnd&)>& ended);
+                      const std::function<void(const JobEnd&)>& report);
+    void lose(int rank, const std::string& reason, const std::function<void(const JobEnd&)>& report);
+    void report_lost_ranks(const std::function<void(const JobEnd&)>& report);
 
     std::unique_ptr<Communicator> all;
     std::vector<Other> others;  ///< on rank 0, by rank

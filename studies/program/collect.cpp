@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -79,13 +80,34 @@ Shard shard_of(const JobRecords& records)
     return shard;
 }
 
-/// Copies what runs have written beside their results.
+/// Copies what runs have written beside their results. Files of `to` itself, such as study.csv, remain: a
+/// shard has none of them, but its folder may have those of an earlier study.
 void copy_other_files(const std::string& from, const std::string& to)
 {
-    for (const auto& item : fs::directory_iterator(from))
-        if (item.path().filename() != "study.shard")
-            fs::copy(item.path(), to / item.path().filename(),
-                     fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    try {
+        for (const auto& item : fs::directory_iterator(from)) {
+            const fs::path target = to / item.path().filename();
+            if (item.is_directory())
+                fs::copy(item.path(), target,
+                         fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+            else if (item.path().filename() != "study.shard")
+                fs::copy(item.path(), target, fs::copy_options::skip_existing);
+        }
+    } catch (const fs::filesystem_error& e) {
+        throw io::IoError(std::string("collect: ") + e.what());
+    }
+}
+
+/// Refuses an output directory that is a shard, or in one.
+void refuse_output_in_shard(const std::string& output, const std::vector<std::string>& directories)
+{
+    const fs::path to = fs::weakly_canonical(output);
+    for (const std::string& directory : directories) {
+        const fs::path of = fs::weakly_canonical(directory);
+        if (std::mismatch(of.begin(), of.end(), to.begin(), to.end()).first == of.end())
+            throw io::UsageError("collect: --output: must not be the folder of a shard or in one, got " +
+                                 output);
+    }
 }
 
 }  // namespace
@@ -173,8 +195,9 @@ int collect(const CollectOptions& collected, const JobRecords& shards, const std
     options.quiet = of.quiet;
     options.json = of.json;
     options.expect.insert(options.expect.end(), of.expect.begin(), of.expect.end());
-    const int code = run_collected(kind, options, shards);
     const std::string to = options.output.empty() && !options.json ? "out/" + kind : options.output;
+    if (!to.empty()) refuse_output_in_shard(to, collected.directories);
+    const int code = run_collected(kind, options, shards);
     if (!to.empty())
         for (const std::string& directory : collected.directories) copy_other_files(directory, to);
     return code;

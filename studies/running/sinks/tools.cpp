@@ -6,8 +6,6 @@
 #include "studies/running/coupling.hpp"
 #include "studies/running/tables/table_sink.hpp"
 
-#include <algorithm>
-
 namespace hilda::studies {
 
 namespace {
@@ -65,10 +63,14 @@ private:
             studies::append(row, b.r);
             const lie::Vec4 p = lie::euler_parameters(b.A);
             row.insert(row.end(), p.begin(), p.end());
-            const double time = H * std::max(1., sum.exchanges);
-            studies::append(row, sum.P / time), studies::append(row, sum.L / time);
-            row.insert(row.end(), {sum.work / time, sum.work_grains / time, sum.total_work, sum.error});
-            sum = {.total_work = sum.total_work, .error = sum.error};
+            if (sum.exchanges > 0) {  // otherwise the loads of the previous row remain
+                const double time = H * sum.exchanges;
+                sum.F = sum.P / time, sum.T = sum.L / time;
+                sum.power = sum.work / time, sum.power_grains = sum.work_grains / time;
+            }
+            studies::append(row, sum.F), studies::append(row, sum.T);
+            row.insert(row.end(), {sum.power, sum.power_grains, sum.total_work, sum.error});
+            sum.P.setZero(), sum.L.setZero(), sum.work = sum.work_grains = sum.exchanges = 0;
         }
     }
 
@@ -77,6 +79,9 @@ private:
         lie::Vec3 P = lie::Vec3::Zero(), L = lie::Vec3::Zero();  ///< [N s], [N m s]
         double work = 0, work_grains = 0;                        ///< [J]
         double exchanges = 0;
+        // of the last row
+        lie::Vec3 F = lie::Vec3::Zero(), T = lie::Vec3::Zero();  ///< [N], [N m]
+        double power = 0, power_grains = 0;                      ///< [W]
         // since the start
         double total_work = 0, error = 0;  ///< [J]
     };

@@ -20,7 +20,7 @@ Ended mpirun(const Scratch& in, int ranks, const std::vector<std::string>& argum
              const std::string& end_at = "", const std::string& more = "")
 {
     std::string command = "cd '" + in.path.string() + "' && ";
-    // The leaks of Open MPI are not ours.
+    // Open MPI leaks memory.
     command += "HILDA_END_AT='" + end_at + "' ASAN_OPTIONS=detect_leaks=0 ";
     command += "timeout 120 mpirun --allow-run-as-root --oversubscribe " + more + " -n " +
                std::to_string(ranks) + " '" + (end_at.empty() ? hilda_program : hilda_ending_program) + "'";
@@ -120,7 +120,7 @@ TEST_CASE("a rank that is killed costs its run with mpirun --enable-recovery", "
     // The process of the run ends its parent process, the rank. Rank 0 may compute this run: then the study
     // ends, and is repeated.
     Ended ended;
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < 30; ++k) {
         ended = mpirun(in, 4, with(swing, {"--output", "cut", "--force"}),
                        std::to_string(-SIGKILL) + " 1 runs/0003/model.json.tmp", "--enable-recovery");
         if (fs::exists(in / "cut/study.csv")) break;

@@ -109,6 +109,13 @@ TEST_CASE("hilda collect copies the motions of the runs; an interrupted shard co
         CHECK(motion == read(in / "whole/runs" / run / "trajectory.csv"));
     }
     check_refused(in, collect, 2, "all: is not empty; --force overwrites it");
+    for (const char* wrong : {"part-1-of-2", "part-2-of-2/all"})
+        check_refused(in, {"collect", "part-1-of-2", "part-2-of-2", "--output", wrong, "--force"}, 2,
+                      "--output: must not be the folder of a shard or in one");
+    // A table of an earlier study in the folder of a shard is not copied.
+    write(in / "part-1-of-2/study.csv", "of another study");
+    REQUIRE(call(in, with(collect, {"--force"})).code == 0);
+    CHECK(read(in / "all/study.csv") != "of another study");
     CHECK(call(in, with(collect, {"--force", "--quiet"})).code == 0);
 
     write(in / "swing.json", pendulum("", R"({"type": "gravity"})"));

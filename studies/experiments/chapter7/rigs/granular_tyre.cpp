@@ -253,7 +253,7 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
         if (r.test.is_free())
             free = r;
         else if (r.test.mu_r > 0)
-            slip.push_back(r.slip), pull.push_back(r.pull), torque.push_back(r.torque),
+            slip.push_back(r.test.slip), pull.push_back(r.pull), torque.push_back(r.torque),
                 sinkage.push_back(r.sinkage);
     }
     double least_rise = std::numeric_limits<double>::infinity(), least_torque_rise = least_rise;
@@ -264,7 +264,8 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
     for (const Result& r : results) {
         if (r.test.is_free() || r.test.mu_r > 0) continue;
         smooth_sinkage += r.sinkage, smooth_pull += r.pull;
-        rough_sinkage += value_at(r.slip, slip, sinkage), rough_pull += value_at(r.slip, slip, pull);
+        rough_sinkage += value_at(r.test.slip, slip, sinkage),
+            rough_pull += value_at(r.test.slip, slip, pull);
     }
     const auto least =
         static_cast<std::size_t>(std::min_element(sinkage.begin(), sinkage.end()) - sinkage.begin());

@@ -15,7 +15,7 @@ namespace {
 // Pauses between two polls of the messages [µs]. Each poll costs about 20 µs of the time of a run. The end of
 // an own run ends a pause.
 constexpr long pause = 300;         // of a rank that waits for a run
-constexpr long pause_first = 1000;  // of rank 0
+constexpr long pause_first = 5000;  // of rank 0
 constexpr long pause_busy = 50000;  // of another rank that can start no run
 constexpr auto interval_of_alive = std::chrono::seconds(1);
 /// A rank on another machine that computes a job and sends nothing for this time counts as lost.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/files.hpp"
 
+#include "io/descriptor.hpp"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,19 +24,6 @@ namespace {
     throw IoError(path + ": " + what + ": " + std::strerror(error));
 }
 
-/// Writes a text and returns the number of written bytes: all, or fewer after an error, which is in errno
-size_t write_all(int descriptor, std::string_view content)
-{
-    size_t done = 0;
-    while (done < content.size()) {
-        const ssize_t n = write(descriptor, content.data() + done, content.size() - done);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) break;
-        done += static_cast<size_t>(n);
-    }
-    return done;
-}
-
 /// A temporary file, which commit() renames to the target and which is removed otherwise
 class Temporary {
 public:
@@ -54,7 +43,7 @@ public:
 
     void write(std::string_view content) const
     {
-        if (write_all(descriptor, content) < content.size()) fail(target);
+        if (write_all(descriptor, content.data(), content.size()) < content.size()) fail(target);
     }
 
     void commit()
@@ -170,7 +159,7 @@ OutputFile::~OutputFile()
 
 void OutputFile::flush()
 {
-    const size_t done = write_all(descriptor, buffer);
+    const size_t done = write_all(descriptor, buffer.data(), buffer.size());
     const bool failed = done < buffer.size();
     written += done;
     buffer.clear();  // a later flush() must not fail again for the same rows

@@ -5,10 +5,15 @@
 
 #include "granular/fields/field_spec.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 namespace hilda::granular {
+
+/// Number of steps h in a time between outputs or of a stage [s], at least 1
+inline long steps_in(double time, double h) { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
 
 /// Lists of contacts, and their network in the frames
 struct ContactSpec {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/cosim/channel.hpp"
 
+#include "io/descriptor.hpp"
+
 #include <bit>
 #include <cerrno>
 #include <csignal>
@@ -31,12 +33,8 @@ void PipeChannel::send(const std::string& message)
     std::string all(sizeof length, '\0');
     std::memcpy(all.data(), &length, sizeof length);
     all += message;
-    for (std::size_t done = 0; done < all.size();) {
-        const ssize_t n = write(out, all.data() + done, all.size() - done);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) throw ExchangeLost(peer + " has ended during an exchange: " + std::strerror(errno));
-        done += static_cast<std::size_t>(n);
-    }
+    if (io::write_all(out, all.data(), all.size()) < all.size())
+        throw ExchangeLost(peer + " has ended during an exchange: " + std::strerror(errno));
 }
 
 std::string PipeChannel::receive()
@@ -54,14 +52,9 @@ std::string PipeChannel::receive()
 
 void PipeChannel::read(void* to, std::size_t count)
 {
-    char* at = static_cast<char*>(to);
-    while (count > 0) {
-        const ssize_t n = ::read(in, at, count);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) throw ExchangeLost(peer + " cannot be read: " + std::strerror(errno));
-        if (n == 0) throw ExchangeLost(peer + " has ended during an exchange");
-        at += n, count -= static_cast<std::size_t>(n);
-    }
+    if (io::read_all(in, to, count) == count) return;
+    throw ExchangeLost(peer + (errno == 0 ? " has ended during an exchange"
+                                          : std::string(" cannot be read: ") + std::strerror(errno)));
 }
 
 }  // namespace hilda::granular

@@ -76,7 +76,7 @@ public:
     /// are constant in these steps. The impulses are written to `to`.
     virtual void advance(const std::vector<ToolMotion>& motions, long number,
                          std::vector<ToolImpulse>& to) = 0;
-    virtual std::vector<ToolStiffness> stiffness() = 0;
+    virtual void stiffness(std::vector<ToolStiffness>& to) = 0;  ///< of the present contacts
     /// Writes a checkpoint of the grains.
     virtual void save() = 0;
     /// Ends the run of the grains and writes its outputs, with this exit code in its summary.

@@ -113,10 +113,10 @@ void RemoteExchange::advance(const std::vector<ToolMotion>& motions, long steps,
         call(written([&](io::Archive& a) { a.value(kind), a.list(list), a.value(count); })));
 }
 
-std::vector<ToolStiffness> RemoteExchange::stiffness()
+void RemoteExchange::stiffness(std::vector<ToolStiffness>& to)
 {
     auto kind = Request::stiffness;
-    return read_list<ToolStiffness>(call(written([&](io::Archive& a) { a.value(kind); })));
+    to = read_list<ToolStiffness>(call(written([&](io::Archive& a) { a.value(kind); })));
 }
 
 void RemoteExchange::save()
@@ -177,7 +177,8 @@ void serve(Channel& channel,
                 break;
             }
             case Request::stiffness: {
-                std::vector<ToolStiffness> stiffness = grains->stiffness();
+                std::vector<ToolStiffness> stiffness;
+                grains->stiffness(stiffness);
                 out.list(stiffness);
                 break;
             }

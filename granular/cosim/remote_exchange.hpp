@@ -26,7 +26,7 @@ public:
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
     void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
-    std::vector<ToolStiffness> stiffness() override;
+    void stiffness(std::vector<ToolStiffness>& to) override;
     void save() override;
     void close(int code) override;
 

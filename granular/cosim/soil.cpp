@@ -97,7 +97,7 @@ void Soil::advance(const std::vector<ToolMotion>& motions, long steps, std::vect
     }
 }
 
-std::vector<ToolStiffness> Soil::stiffness()
+void Soil::stiffness(std::vector<ToolStiffness>& to)
 {
     const std::vector<Boundary>& all_boundaries = world().all_boundaries();
     if (single.empty())
@@ -110,11 +110,10 @@ std::vector<ToolStiffness> Soil::stiffness()
             }
             single.push_back(largest);
         }
-    const std::vector<double> present = world().boundary_stiffness();
-    std::vector<ToolStiffness> of;
+    world().boundary_stiffness(present);
+    to.resize(number.size());
     for (std::size_t k = 0; k < number.size(); ++k)
-        of.push_back({.present = present[static_cast<std::size_t>(number[k])], .single = single[k]});
-    return of;
+        to[k] = {.present = present[static_cast<std::size_t>(number[k])], .single = single[k]};
 }
 
 }  // namespace hilda::granular

@@ -25,7 +25,7 @@ public:
     void open(const std::vector<ToolBody>& bodies, long steps) override;
     std::vector<ToolImpulse> loads(const std::vector<ToolMotion>& motions) override;
     void advance(const std::vector<ToolMotion>& motions, long number, std::vector<ToolImpulse>& to) override;
-    std::vector<ToolStiffness> stiffness() override;
+    void stiffness(std::vector<ToolStiffness>& to) override;
     void save() override { run->save(); }
     void close(int code) override { run->close(code); }
 
@@ -39,8 +39,9 @@ private:
     double step;         ///< [s]
     std::unique_ptr<SteppedRun> run;
     std::vector<Tool> all;
-    std::vector<int> number;     ///< of the boundary of each tool
-    std::vector<double> single;  ///< ToolStiffness::single of each tool, once it is known
+    std::vector<int> number;      ///< of the boundary of each tool
+    std::vector<double> single;   ///< ToolStiffness::single of each tool, once it is known
+    std::vector<double> present;  ///< stiffness of each boundary
     std::vector<ToolBody> body;
     std::vector<EulerParameters<double>> frame;  ///< Boundary::p of each tool at the beginning of a step
 };

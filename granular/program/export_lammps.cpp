@@ -247,11 +247,6 @@ private:
         }
     }
 
-    long steps_in(double time) const
-    {
-        return std::max(1L, std::lround(std::min(time / c.h, 9e15)));  // as CaseSetup::steps_in
-    }
-
     void add_run(std::string& text) const
     {
         text += "\nfix             nve moving nve/sphere\n";
@@ -272,16 +267,16 @@ private:
                 values += ",$(v_" + variable + ":%.9g)";
                 thermo += " v_" + variable;
             }
-        const std::string rows = std::to_string(steps_in(c.interval));
+        const std::string rows = std::to_string(steps_in(c.interval, c.h));
         text += "thermo_style    custom " + thermo + "\nthermo          " + rows +
                 "\nthermo_modify   norm no lost " + (w.removes() ? "ignore" : "error") +
                 " format float %.9g\nfix             rows all print " + rows + " \"" + values +
                 "\" file lammps.csv screen no title \"" + columns + "\"\n";
         if (c.frame_interval > 0)
-            text += "dump            frames all custom " + std::to_string(steps_in(c.frame_interval)) +
+            text += "dump            frames all custom " + std::to_string(steps_in(c.frame_interval, c.h)) +
                     " frames.lammpstrj id type radius x y z vx vy vz omegax omegay omegaz\n"
                     "dump_modify     frames sort id\n";
-        text += "run             " + std::to_string(steps_in(c.end)) + '\n';
+        text += "run             " + std::to_string(steps_in(c.end, c.h)) + '\n';
     }
 
     const Case& c;

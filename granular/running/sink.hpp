@@ -40,7 +40,7 @@ struct CaseSetup {
     const io::SinkOptions& options;
 
     /// Number of steps in a time between outputs [s], at least 1
-    long steps_in(double time) const { return std::max(1L, std::lround(std::min(time / c.h, 9e15))); }
+    long steps_in(double time) const { return granular::steps_in(time, c.h); }
 };
 
 /// Contacts of a world. Throws NotFiniteState if a force is not finite.

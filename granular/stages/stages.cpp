@@ -100,7 +100,7 @@ std::vector<int> Stages::moving() const
     return all;
 }
 
-long Stages::steps_in(double time) const { return std::max(1L, std::lround(std::min(time / h, 9e15))); }
+long Stages::steps_in(double time) const { return granular::steps_in(time, h); }
 
 void Stages::begin_run(Case& c, const Warn& warn)
 {

@@ -407,7 +407,7 @@ public:
     StepLimits step_limits(double least_speed = 0.1) const;
     /// Sums of the stiffness of the normal law over the contacts of each boundary and of its parts at t
     /// [N/m]
-    std::vector<double> boundary_stiffness() const;
+    void boundary_stiffness(std::vector<double>& to) const;
     /// The largest stiffness of one contact of a boundary, as if it were flat, with a particle of the world,
     /// if the overlap is this part of the radius of the particle [N/m]; 0 without particles
     double contact_stiffness(int boundary, double overlap) const;

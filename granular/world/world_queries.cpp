@@ -180,12 +180,12 @@ World::StepLimits World::step_limits(double least_speed) const
     return limits;
 }
 
-std::vector<double> World::boundary_stiffness() const
+void World::boundary_stiffness(std::vector<double>& sum) const
 {
     update_for_query();
     const Arrays<par::Cpu>& of = engine->arrays();
     const Pairs<par::Cpu>& pairs = of.pairs;
-    std::vector<double> sum(boundaries.size(), 0);
+    sum.assign(boundaries.size(), 0);
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         const std::uint32_t j = pairs.j.data()[n], surface = j & ~PairView::boundary_bit;
         if (j == surface) continue;
@@ -205,7 +205,6 @@ std::vector<double> World::boundary_stiffness() const
         const PairLaw& law = laws[laws.size() > 1 ? pairs.law.data()[n] : 0];
         sum[b.body >= 0 ? static_cast<std::size_t>(b.body) : k] += normal_stiffness(law, contact, history);
     }
-    return sum;
 }
 
 double World::contact_stiffness(int boundary, double overlap) const

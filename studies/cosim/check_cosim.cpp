@@ -89,11 +89,13 @@ int check_cosim(const CheckOptions& o)
     std::unique_ptr<granular::Soil> soil = local_grains(file, file.end, {.quiet = true});
     soil->insert();
     const granular::Soil& grains = *soil;
-    const std::vector<granular::ToolStiffness> stiffness = soil->stiffness();
+    std::vector<granular::ToolStiffness> stiffness;
+    soil->stiffness(stiffness);
     GrainCoupling coupling(file, std::move(soil));
     dae::Description d = named_model(file.model, {}, "");
     coupling.find_bodies(d);
     const dae::StartReport start = dae::start(d);
+    coupling.analyse(*d.model);
     coupling.refuse_unstable(stiffness, d.x);
 
     std::vector<std::string> warnings = d.warnings;
@@ -104,11 +106,12 @@ int check_cosim(const CheckOptions& o)
         warnings.push_back(fmt::format("{}: gravity of the model is {} m/s², that of the case is {} m/s²",
                                        o.model, vector_text(of_model), vector_text(of_grains)));
 
+    EffectiveMass effective_mass(*d.model);
     std::vector<PairInfo> pairs;
     for (std::size_t j = 0; j < file.pairs.size(); ++j) {
         const CoupledTool& tool = coupling.tools()[j];
         const double m = d.model->mass().m[static_cast<size_t>(tool.body)],
-                     effective = effective_mass(*d.model, d.x, tool.body);
+                     effective = effective_mass(d.x, tool.body);
         pairs.push_back({.body = tool.name,
                          .boundary = file.pairs[j].boundary,
                          .mass = m,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/cosim/effective_mass.hpp"
 
-#include "lie/solver/saddle.hpp"
 #include "lie/system.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -10,13 +9,14 @@
 
 namespace hilda::studies {
 
-double effective_mass(const lie::System& system, const lie::State& x, int body)
+EffectiveMass::EffectiveMass(const lie::System& system) : system(system), K(system), z(K.size()) {}
+
+double EffectiveMass::operator()(const lie::State& x, int body)
 {
-    lie::Saddle K(system);
     K.assemble(x);
     lie::Mat3 Y;
     for (int axis = 0; axis < 3; ++axis) {
-        Eigen::VectorXd z = Eigen::VectorXd::Unit(K.size(), 6 * body + axis);
+        z = Eigen::VectorXd::Unit(K.size(), 6 * body + axis);
         K.solve(z);
         Y.col(axis) = z.segment<3>(6 * body);
     }

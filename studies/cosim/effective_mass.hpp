@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "lie/state.hpp"
+#include "lie/solver/saddle.hpp"
 
 namespace hilda::lie {
 class System;
@@ -17,8 +17,18 @@ namespace hilda::studies {
 ///
 /// It is the mass of a free body, and infinite if the constraints and drivers prescribe the motion of the
 /// centre. A force beside the centre of mass also turns the body and accelerates a smaller mass.
-///
-/// Throws lie::SingularMatrix.
-double effective_mass(const lie::System& system, const lie::State& x, int body);
+class EffectiveMass {
+public:
+    /// Analyses the saddle matrix. The system must outlive the object.
+    explicit EffectiveMass(const lie::System& system);
+
+    /// The effective mass of a body in the state x. Throws lie::SingularMatrix.
+    double operator()(const lie::State& x, int body);
+
+private:
+    const lie::System& system;
+    lie::Saddle K;
+    Eigen::VectorXd z;
+};
 
 }  // namespace hilda::studies

@@ -68,6 +68,7 @@ void GrainCoupling::find_bodies(const dae::Description& d)
 void GrainCoupling::prepare(dae::Description& d, std::optional<long> node)
 {
     find_bodies(d);
+    warned.assign(all.size(), false);
     std::vector<granular::ToolBody> bodies;
     for (std::size_t j = 0; j < all.size(); ++j)
         bodies.push_back({mass[j], to_granular(lie::Vec3(-(frame[j].transpose() * file.pairs[j].r)))});
@@ -140,13 +141,14 @@ void GrainCoupling::begin(const lie::March& march, const std::function<void(cons
 {
     for (CoupledWrench* f : force) f->end_start();
     warn = on_warning;
-    warned.assign(all.size(), false);
-    if (march.number() == 0) refuse_unstable(grains->stiffness(), march.node());
+    analyse(*model);
+    grains->stiffness(stiffness);
+    if (march.number() == 0) refuse_unstable(stiffness, march.node());
 }
 
 double GrainCoupling::stable_step(std::size_t j, double stiffness, const lie::State& x) const
 {
-    return stiffness > 0 ? 2 * std::sqrt(effective_mass(*model, x, all[j].body) / stiffness)
+    return stiffness > 0 ? 2 * std::sqrt((*effective_mass)(x, all[j].body) / stiffness)
                          : std::numeric_limits<double>::infinity();
 }
 
@@ -156,8 +158,7 @@ bool GrainCoupling::is_unstable(std::size_t j, double stiffness, const lie::Stat
     return H() * H() * stiffness > 4 * mass[j] && H() > stable_step(j, stiffness, x);
 }
 
-void GrainCoupling::refuse_unstable(const std::vector<granular::ToolStiffness>& stiffness,
-                                    const lie::State& x) const
+void GrainCoupling::refuse_unstable(const std::vector<granular::ToolStiffness>& of, const lie::State& x) const
 {
     for (std::size_t j = 0; j < all.size(); ++j) {
         const auto refuse = [&](double K, const std::string& contacts) {
@@ -167,16 +168,16 @@ void GrainCoupling::refuse_unstable(const std::vector<granular::ToolStiffness>& 
                 "body '{}' on {} with {:.3g} N/m; reduce substeps",
                 file.pairs[j].place, H(), stable_step(j, K, x), all[j].name, contacts, K));
         };
-        refuse(stiffness[j].single, fmt::format("one contact with an overlap of {} % of the radius",
-                                                100 * granular::ToolStiffness::single_overlap));
-        refuse(stiffness[j].present, "its contacts at the start");
+        refuse(of[j].single, fmt::format("one contact with an overlap of {} % of the radius",
+                                         100 * granular::ToolStiffness::single_overlap));
+        refuse(of[j].present, "its contacts at the start");
     }
 }
 
 /// Warns once of each body whose contacts have become too stiff for the step.
 void GrainCoupling::check_stability(const lie::State& x)
 {
-    const std::vector<granular::ToolStiffness> stiffness = grains->stiffness();
+    grains->stiffness(stiffness);
     for (std::size_t j = 0; j < all.size(); ++j) {
         const double K = stiffness[j].present;
         if (warned[j] || !is_unstable(j, K, x)) continue;

@@ -6,6 +6,7 @@
 #include "granular/cosim/exchange.hpp"
 #include "studies/cosim/cosim_file.hpp"
 #include "studies/cosim/coupled_wrench.hpp"
+#include "studies/cosim/effective_mass.hpp"
 #include "studies/running/coupling.hpp"
 
 #include <memory>
@@ -27,8 +28,10 @@ public:
     /// Finds the bodies of the pairs. Throws io::InvalidInput for a pair without a body, and for a boundary
     /// that is not at the place of its body or has another mass.
     void find_bodies(const dae::Description& description);
+    /// Prepares the functions below, after the start of the model.
+    void analyse(const lie::System& system) { effective_mass = std::make_unique<EffectiveMass>(system); }
     /// The stability limit 2 √(m/K) of a body whose contacts have this stiffness K [N/m], with its
-    /// effective_mass() in the state x [s]
+    /// EffectiveMass in the state x [s]
     double stable_step(std::size_t tool, double stiffness, const lie::State& x) const;
     /// Throws io::InvalidInput if the step is above the stability limit of a body on one contact, or on its
     /// present contacts.
@@ -63,9 +66,12 @@ private:
     std::vector<granular::ToolImpulse> impulses;  ///< of the exchange
     std::vector<double> mass;                     ///< of the bodies [kg]
     std::function<void(const std::string&)> warn;
-    std::vector<bool> warned;  ///< of the stability limit, by body
 
-    static constexpr long nodes_between_checks = 16;  ///< of the stability limit
+    // Of the stability limit
+    static constexpr long nodes_between_checks = 16;
+    std::unique_ptr<EffectiveMass> effective_mass;
+    std::vector<granular::ToolStiffness> stiffness;
+    std::vector<bool> warned;  ///< by body
 };
 
 }  // namespace hilda::studies

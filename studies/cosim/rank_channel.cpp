@@ -28,7 +28,7 @@ void RankChannel::send(const std::string& message)
 
 std::string RankChannel::receive()
 {
-    constexpr int looks = 1000;  // between two questions whether the other rank is there
+    constexpr int polls = 1000;  // between two tests whether the other rank exists
     bool gone = false;
     for (int k = 1;; ++k) {
         if (auto received = all->receive()) {
@@ -36,7 +36,7 @@ std::string RankChannel::receive()
             return std::move(received->message);
         }
         if (gone) throw granular::ExchangeLost(lost());
-        gone = k % looks == 0 && all->is_gone(peer);  // its last message may have arrived
+        gone = k % polls == 0 && all->is_gone(peer);  // its last message may have arrived
         sched_yield();
     }
 }

@@ -2,6 +2,7 @@
 #include "studies/distribution/job_processes.hpp"
 
 #include "io/archive.hpp"
+#include "io/descriptor.hpp"
 #include "io/error.hpp"
 
 #include <fcntl.h>
@@ -24,26 +25,12 @@ namespace {
 
 bool write_all(int descriptor, const void* bytes, size_t count)
 {
-    const char* at = static_cast<const char*>(bytes);
-    while (count > 0) {
-        const ssize_t n = ::write(descriptor, at, count);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        at += n, count -= static_cast<size_t>(n);
-    }
-    return true;
+    return io::write_all(descriptor, bytes, count) == count;
 }
 
 bool read_all(int descriptor, void* bytes, size_t count)
 {
-    char* at = static_cast<char*>(bytes);
-    while (count > 0) {
-        const ssize_t n = ::read(descriptor, at, count);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return false;
-        at += n, count -= static_cast<size_t>(n);
-    }
-    return true;
+    return io::read_all(descriptor, bytes, count) == count;
 }
 
 /// Begins each result.

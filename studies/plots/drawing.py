@@ -122,6 +122,16 @@ def spheres(axes, places, radius=None, values=None, most=1, **look):
     return drawn
 
 
+def wheel_on_grains(axes, grains, grain, radius, centre, speed):
+    """Draws grains, coloured by their speed over `speed`, and a wheel [mm]. `centre`: its columns in the rows of the grains."""
+    drawn = spheres(axes, grains, grain, [v / speed for v in numbers(grains, "speed")], linewidths=0.2, edgecolors="0.3")
+    at = tuple(1000 * number(grains[0][column]) for column in centre)
+    axes.add_patch(plt.Circle(at, 1000 * radius, fill=False, color="k", lw=1.5))
+    axes.annotate("", xy=(at[0] + 70, at[1]), xytext=at, arrowprops={"arrowstyle": "->", "color": "k"})
+    axes.set(aspect="equal", xlabel="x [mm]")
+    return drawn
+
+
 def grid(axes):
     """Light grid behind the curves"""
     axes.grid(True, which="major", color="0.92")

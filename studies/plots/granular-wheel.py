@@ -4,7 +4,7 @@
 
     granular-wheel.py DIR     reads DIR/study.csv, DIR/motion.csv and DIR/grains.csv, writes DIR/granular-wheel.png
 """
-from drawing import COLOURS, directory, distinct, grid, number, numbers, plt, read, save, spheres, where
+from drawing import COLOURS, directory, distinct, grid, number, numbers, plt, read, save, wheel_on_grains, where
 
 OMEGA = 0.2967  # [rad/s]
 RADIUS, GRAIN = 0.13, 7.5e-3  # of the cylinder and of the grains [m]
@@ -22,17 +22,6 @@ def over_slip(axes, rows, column, factor, label):
     axes.set(xlabel="slip", ylabel=label)
 
 
-def picture(axes, row, grains):
-    """The grains at the end, coloured by their speed over that of the rim, with the cylinder"""
-    drawn = spheres(axes, grains, GRAIN, [speed / (OMEGA * RADIUS) for speed in numbers(grains, "speed")], linewidths=0.2,
-                    edgecolors="0.3")
-    centre = (1000 * number(grains[0]["wheel_x"]), 1000 * number(grains[0]["wheel_z"]))
-    axes.add_patch(plt.Circle(centre, 1000 * RADIUS, fill=False, color="k", lw=1.5))
-    axes.annotate("", xy=(centre[0] + 70, centre[1]), xytext=centre, arrowprops={"arrowstyle": "->", "color": "k"})
-    axes.set(xlim=(0, 700), ylim=(0, 280), aspect="equal", xlabel="x [mm]", title=f"slip {number(row['slip']):g}")
-    return drawn
-
-
 def draw(folder):
     rows, motion, grains = (read(folder, name) for name in ("study.csv", "motion.csv", "grains.csv"))
     figure, panels = plt.subplots(3, 3, figsize=(13, 10.5), height_ratios=[1.25, 1, 0.8])
@@ -48,7 +37,9 @@ def draw(folder):
         axes.axvline(max(numbers(motion, "t")) / 2, color="0.6", lw=0.8, ls=":")
         axes.set(xlabel="time [s]", ylabel=label)
     for axes, row in zip(panels[2], [row for row in chosen if number(row["slip"]) != 0]):
-        drawn = picture(axes, row, where(grains, wheel=row["wheel"], slip=row["slip"], mu_r=row["mu_r"]))
+        mine = where(grains, wheel=row["wheel"], slip=row["slip"], mu_r=row["mu_r"])
+        drawn = wheel_on_grains(axes, mine, GRAIN, RADIUS, ("wheel_x", "wheel_z"), OMEGA * RADIUS)
+        axes.set(xlim=(0, 700), ylim=(0, 280), title=f"slip {number(row['slip']):g}")
     panels[2][0].set_ylabel("z [mm]")
     bar = figure.colorbar(drawn, cax=panels[2][2].inset_axes([1.03, 0, 0.04, 1]))
     bar.set_label(r"speed over $\omega$ radius")

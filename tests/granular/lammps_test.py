@@ -129,13 +129,16 @@ def refusals(runs):
             ("/boundaries/0", "a boundary that moves", wall(v=[0, 0, "t"])),
             ("/boundaries/0", "a boundary that moves", wall(mass=1)),
             ("/boundaries/0", "a mesh, of which LAMMPS has no walls,", {"boundaries": [mesh]}),
-            ("/boundaries/0/type", "this type of boundary", wall(type="cone", normal=None, axis=[0, 0, -1], half_angle=0.5, r=[0, 0, -0.01])),
-            ("/boundaries/0/axis", "a cylinder that is not along x, y or z", wall(type="cylinder", normal=None, axis=[0, 1, 1], radius=0.02, inside=True)),
+            ("/boundaries/0/type", "this type of boundary",
+             wall(type="cone", normal=None, axis=[0, 0, -1], half_angle=0.5, r=[0, 0, -0.01])),
+            ("/boundaries/0/axis", "a cylinder that is not along x, y or z",
+             wall(type="cylinder", normal=None, axis=[0, 1, 1], radius=0.02, inside=True)),
             ("/domain/outflow", "an outflow through single sides", {"domain": dict(CASE["domain"], outflow=["-z"])}),
             ("/stages", "a case with stages", {"stages": [{"name": "a", "duration": 1e-3}]}),
             ("/insert", "an insertion", {"insert": [insert]}),
             ("/particles/0/force", "a force on a particle", {"particles": [dict(BALL, force=[0, 0, 1])]}),
-            ("/particles/0/attached_to", "an attached particle", {"particles": [{"r": [0, 0, 0.01], "radius": R, "material": "glass", "attached_to": "floor"}]}),
+            ("/particles/0/attached_to", "an attached particle",
+             {"particles": [{"r": [0, 0, 0.01], "radius": R, "material": "glass", "attached_to": "floor"}]}),
             ("/particles/0/replica", "a replica", {"particles": [dict(BALL, replica=1)]}),
             ("/particles/0/clump", "a clump", {"clumps": [clump], "particles": [{"clump": "pair", "r": [0, 0, 0.01]}]})):
         name = write(runs, "refused", **json.loads(json.dumps(changes)))
@@ -150,7 +153,8 @@ def refusals(runs):
     for given, message in ((("export", "refused.json"), "export: the format is required, --lammps"),
                            (("export", "--lammps"), "export: NAME is required, the case"),
                            (("refused.json", "--lammps"), "--lammps: is valid after export only"),
-                           (("export", "--lammps", "refused.json", "--resume"), "--resume: is valid for cases only, but export is a command")):
+                           (("export", "--lammps", "refused.json", "--resume"),
+                            "--resume: is valid for cases only, but export is a command")):
         ended = runs.run(*given)
         expect(ended.returncode == 2 and ended.stderr == f"hilda: error: granular: {message}\n", f"{given}: {ended.stderr}")
 
@@ -170,7 +174,8 @@ class Both:
             by_time = {round(float(row["t"]) * 1e9): row for row in csv.DictReader(rows)}
             self.rows = [(by_time[round(float(other["t"]) * 1e9)], other) for other in csv.DictReader(others)]
         with open(out / name / "particles.csv") as particles:
-            self.hilda = [[float(row[key]) for key in ("vx", "vy", "vz", "omega_x", "omega_y", "omega_z")] for row in csv.DictReader(particles)]
+            self.hilda = [[float(row[key]) for key in ("vx", "vy", "vz", "omega_x", "omega_y", "omega_z")]
+                          for row in csv.DictReader(particles)]
         frame = (out / f"{name}-lammps" / "frames.lammpstrj").read_text().split("ITEM: TIMESTEP")[-1].split("ITEM: ATOMS")[1].splitlines()
         self.lammps = [[float(word) for word in line.split()[6:]] for line in frame[1:]]
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/module.hpp"
+
+#include "io/error.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include <dlfcn.h>
+
+namespace hilda::io {
+
+void* module_symbol(const std::string& what, const ModuleFile& file, const char* symbol)
+{
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    std::vector<fs::path> places = {folder, folder.parent_path(), folder.parent_path() / file.library_folder};
+    Dl_info here{};
+    if (dladdr(file.caller, &here) != 0 && here.dli_fname[0] == '/')
+        places.push_back(fs::path(here.dli_fname).parent_path() / "hilda");
+    for (const fs::path& place : places) {
+        if (!fs::is_regular_file(place / file.name, error)) continue;
+        void* const loaded =
+            dlopen((place / file.name).c_str(), RTLD_NOW | (file.global ? RTLD_GLOBAL : RTLD_LOCAL));
+        void* const found = loaded == nullptr ? nullptr : dlsym(loaded, symbol);
+        if (found == nullptr) throw NotAvailable(what + ": " + dlerror());
+        return found;
+    }
+    return nullptr;
+}
+
+}  // namespace hilda::io

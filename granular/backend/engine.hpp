@@ -22,10 +22,19 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+class Engine;
+/// Makes engines of the CPU that are not those of this process alone
+class EngineSource {
+public:
+    virtual ~EngineSource() = default;
+    virtual std::unique_ptr<Engine> make() = 0;
+};
+
 /// A device: the CPU, or the GPU with the given number
 struct Device {
     enum Kind { cpu, cuda } kind = cpu;
     int number = 0;
+    EngineSource* source = nullptr;  ///< of the engine; nullptr: the one of this process
 };
 
 /// All arrays of a world in the memory of a back end

@@ -10,6 +10,7 @@ template class Neighbours<par::Cpu>;
 std::unique_ptr<Engine> make_engine(Device device)
 {
     if (device.kind == Device::cuda) return make_gpu_engine(device.number);
+    if (device.source != nullptr) return device.source->make();
     return std::make_unique<EngineOn<par::Cpu>>();
 }
 

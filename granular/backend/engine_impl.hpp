@@ -246,7 +246,8 @@ public:
                                  .force = force.size() > 0 ? force.data() : nullptr,
                                  .id = p.id.data(),
                                  .step = step,
-                                 .total = clump_of.size() > 0 ? particle_loads.data() : nullptr};
+                                 .total = clump_of.size() > 0 ? particle_loads.data() : nullptr,
+                                 .ghost = p.ghost.size() > 0 ? p.ghost.data() : nullptr};
         const float of_particles = advance_particles(arrays);
         if (own.clump.size() == 0) return of_particles;
         // The members have been advanced as particles of their own. They are placed again.
@@ -264,18 +265,8 @@ public:
 
     const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) override
     {
-        wrenches.assign(last_boundaries.size(), Wrench{});
-        boundary_loads.resize(free_pairs);
-        par::for_each(
-            on, free_pairs,
-            detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(), surfaces(),
-                                        with_free_boundary.data(), boundary_loads.data()});
-        host_boundary_loads.resize(free_pairs);
-        par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
-                          free_pairs * sizeof(detail::BoundaryLoad));
-        for (const detail::BoundaryLoad& load : host_boundary_loads)
-            wrenches[load.boundary].F += load.F, wrenches[load.boundary].T += load.T;
-        return wrenches;
+        find_wrench_parts(domain);
+        return wrenches_of_parts();
     }
 
     void set_watched(bool is_watched) override
@@ -290,30 +281,20 @@ public:
     ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
                                const std::vector<BoundaryVelocity>& after) override
     {
-        return watch.external_sums(on, particle_view(domain, own.particle), pair_view(), surfaces(), before,
-                                   after);
+        return external_part(domain, before, after).value();
     }
 
     ParticleSums particle_sums(const Domain& domain, bool only_forces) override
     {
-        const Particles<Backend>& p = own.particle;
-        if (!only_forces)
-            par::copy_bytes(on, neighbours.position_copy(), p.position.data(), p.count * sizeof(Position));
-        return watch.particle_sums(on, particle_view(domain, p), p, force.size() > 0 ? force.data() : nullptr,
-                                   clump_view(), only_forces);
+        return particle_part(domain, only_forces).value();
     }
 
     ContactSums contact_sums(const Domain& domain, float h) override
     {
-        ParticleView particles = particle_view(domain, own.particle);
-        particles.position = neighbours.position_copy();
-        return watch.contact_sums(on, particles, pair_view(), law_view(h));
+        return contact_part(domain, h).value();
     }
 
-    KineticSums kinetic_sums(double s) override
-    {
-        return watch.kinetic_sums(on, own.particle, clump_view(), s);
-    }
+    KineticSums kinetic_sums(double s) override { return kinetic_part(s).value(); }
 
     void wait() override { par::wait(on); }
 
@@ -342,8 +323,67 @@ public:
                clump_sphere.bytes() + clump_of.bytes() + clump_index.bytes() + particle_loads.bytes();
     }
 
-private:
+protected:
     static constexpr bool is_cpu = std::is_same_v<Backend, par::Cpu>;
+
+    // The sums of this process; see Engine.
+
+    ExternalPart external_part(const Domain& domain, const std::vector<BoundaryVelocity>& before,
+                               const std::vector<BoundaryVelocity>& after)
+    {
+        return watch.external_sums(on, particle_view(domain, own.particle), pair_view(), surfaces(), before,
+                                   after);
+    }
+
+    ParticlePart particle_part(const Domain& domain, bool only_forces)
+    {
+        const Particles<Backend>& p = own.particle;
+        if (!only_forces)
+            par::copy_bytes(on, neighbours.position_copy(), p.position.data(), p.count * sizeof(Position));
+        return watch.particle_sums(on, particle_view(domain, p), p, force.size() > 0 ? force.data() : nullptr,
+                                   clump_view(), only_forces);
+    }
+
+    ContactPart contact_part(const Domain& domain, float h)
+    {
+        ParticleView particles = particle_view(domain, own.particle);
+        particles.position = neighbours.position_copy();
+        return watch.contact_sums(on, particles, pair_view(), law_view(h));
+    }
+
+    KineticPart kinetic_part(double s) { return watch.kinetic_sums(on, own.particle, clump_view(), s); }
+
+    /// Force and torque on a boundary with a mass
+    struct WrenchPart {
+        FixedVec F, T;
+        WrenchPart& operator+=(const WrenchPart& o)
+        {
+            F += o.F, T += o.T;
+            return *this;
+        }
+    };
+    /// Sets wrench_parts.
+    void find_wrench_parts(const Domain& domain)
+    {
+        boundary_loads.resize(free_pairs);
+        par::for_each(
+            on, free_pairs,
+            detail::ComputeBoundaryLoad{particle_view(domain, own.particle), pair_view(), surfaces(),
+                                        with_free_boundary.data(), boundary_loads.data()});
+        host_boundary_loads.resize(free_pairs);
+        par::copy_to_host(on, host_boundary_loads.data(), boundary_loads.data(),
+                          free_pairs * sizeof(detail::BoundaryLoad));
+        wrench_parts.assign(last_boundaries.size(), {});
+        for (const detail::BoundaryLoad& load : host_boundary_loads)
+            wrench_parts[load.boundary].F += load.F, wrench_parts[load.boundary].T += load.T;
+    }
+
+    const std::vector<Wrench>& wrenches_of_parts()
+    {
+        wrenches.clear();
+        for (const WrenchPart& part : wrench_parts) wrenches.push_back({part.F.value(), part.T.value()});
+        return wrenches;
+    }
 
     PairView pair_view() const
     {
@@ -513,6 +553,7 @@ private:
     detail::PairLister<Backend> lister;
     par::Array<Backend, detail::BoundaryLoad> boundary_loads;
     std::vector<detail::BoundaryLoad> host_boundary_loads;
+    std::vector<WrenchPart> wrench_parts;  ///< by boundary number
     std::vector<Wrench> wrenches;
     bool watched = false;
     WatchArrays<Backend> watch;

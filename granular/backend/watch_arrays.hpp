@@ -34,7 +34,8 @@ public:
             boundary_pairs = lister.list_pairs(on, HasBoundary{all.pairs.j.data()}, pairs, with_boundary);
         if (par::largest(on, n, detail::IsFixed{omega}) > 0)
             fixed_pairs = lister.list_pairs(
-                on, HasFixedParticle{all.pairs.i.data(), all.pairs.j.data(), omega}, pairs, with_fixed);
+                on, HasFixedParticle{all.pairs.i.data(), all.pairs.j.data(), omega, ghosts(all.particle)},
+                pairs, with_fixed);
         velocities_copy.resize(n);
         particle_blocks.resize(watch_blocks(n)), kinetic_blocks.resize(watch_blocks(n));
         contact_blocks.resize(watch_blocks(pairs));
@@ -59,7 +60,7 @@ public:
         return largest;
     }
 
-    ExternalSums external_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
+    ExternalPart external_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
                                const Surfaces& surfaces, const std::vector<BoundaryVelocity>& before,
                                const std::vector<BoundaryVelocity>& after)
     {
@@ -86,7 +87,7 @@ public:
         return detail::total(on, external_blocks, host_external_blocks);
     }
 
-    ParticleSums particle_sums(const Backend& on, const ParticleView& view, const Particles<Backend>& p,
+    ParticlePart particle_sums(const Backend& on, const ParticleView& view, const Particles<Backend>& p,
                                const Float4* force, const ClumpView& clumps, bool only_forces)
     {
         par::for_each(on, particle_blocks.size(),
@@ -101,14 +102,14 @@ public:
         return detail::total(on, particle_blocks, host_particle_blocks);
     }
 
-    ContactSums contact_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
+    ContactPart contact_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
                              const LawView& laws)
     {
         add_contacts(on, particles, pairs, laws, contact_blocks.data());
         return detail::total(on, contact_blocks, host_contact_blocks);
     }
 
-    KineticSums kinetic_sums(const Backend& on, const Particles<Backend>& p, const ClumpView& clumps,
+    KineticPart kinetic_sums(const Backend& on, const Particles<Backend>& p, const ClumpView& clumps,
                              double s)
     {
         par::for_each(on, kinetic_blocks.size(),
@@ -118,7 +119,8 @@ public:
                                  .s = s,
                                  .count = p.count,
                                  .out = kinetic_blocks.data(),
-                                 .clumps = clumps},
+                                 .clumps = clumps,
+                                 .ghost = ghosts(p)},
                       serial_blocks);
         return detail::total(on, kinetic_blocks, host_kinetic_blocks);
     }
@@ -134,6 +136,11 @@ public:
 private:
     static constexpr std::size_t serial_blocks = 16;
 
+    static const std::uint8_t* ghosts(const Particles<Backend>& p)
+    {
+        return p.ghost.size() > 0 ? p.ghost.data() : nullptr;
+    }
+
     std::uint32_t boundary_pairs = 0, fixed_pairs = 0;
     par::Array<Backend, std::uint32_t> with_boundary, with_fixed;  ///< numbers of these pairs
     par::Array<Backend, Velocities> velocities_copy;
@@ -141,14 +148,14 @@ private:
     par::Array<Backend, float> overlap;
     /// Largest overlap since the last call of take_largest_overlap() and before the last neighbour search
     float earlier_overlap = 0;
-    par::Array<Backend, ParticleSums> particle_blocks;
-    par::Array<Backend, KineticSums> kinetic_blocks;
-    par::Array<Backend, ContactSums> contact_blocks;
-    par::Array<Backend, ExternalSums> external_blocks;
-    std::vector<ParticleSums> host_particle_blocks;
-    std::vector<KineticSums> host_kinetic_blocks;
-    std::vector<ContactSums> host_contact_blocks;
-    std::vector<ExternalSums> host_external_blocks;
+    par::Array<Backend, ParticlePart> particle_blocks;
+    par::Array<Backend, KineticPart> kinetic_blocks;
+    par::Array<Backend, ContactPart> contact_blocks;
+    par::Array<Backend, ExternalPart> external_blocks;
+    std::vector<ParticlePart> host_particle_blocks;
+    std::vector<KineticPart> host_kinetic_blocks;
+    std::vector<ContactPart> host_contact_blocks;
+    std::vector<ExternalPart> host_external_blocks;
     std::vector<float> host_overlaps;
 };
 

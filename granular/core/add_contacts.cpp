@@ -5,7 +5,7 @@
 namespace hilda::granular {
 
 void add_contacts(par::Cpu cpu, const ParticleView& particles, const PairView& pairs, const LawView& laws,
-                  ContactSums* out)
+                  ContactPart* out)
 {
     const auto unit = static_cast<float>(particles.grid.unit);
     par::for_each(cpu, watch_blocks(pairs.count),

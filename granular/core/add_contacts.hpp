@@ -13,7 +13,7 @@ struct AddContacts {
     PairView pairs;
     LawView laws;
     float units_per_metre, unit;
-    ContactSums* out;
+    ContactPart* out;
 
     /// Sets what the energies depend on: overlap, normal, radii and masses.
     HILDA_HD bool find(ContactPoint<float>& contact, std::uint32_t n) const
@@ -38,11 +38,11 @@ struct AddContacts {
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
-        ContactSums sum;
+        ContactPart sum;
         const std::uint32_t end = end_of_block(block, pairs.count);
         for (std::uint32_t n = block * watch_block; n < end; ++n) {
             ContactPoint<float> contact{};
-            if (pairs.in_contact[n] == 0 || !find(contact, n)) continue;
+            if (pairs.in_contact[n] == 0 || particles.is_ghost(pairs.i[n]) || !find(contact, n)) continue;
             contact.v_n = 0, contact.h = laws.h;
             const Float4 u = pairs.history[n];
             History<float> history{{u.x, u.y, u.z}, abs(u.w), {0, 0, 0}, 0, u.w < 0};

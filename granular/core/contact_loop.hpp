@@ -72,9 +72,12 @@ HILDA_HD inline void set_internal(History<R>& history, const Words& words)
 struct ParticleView {
     CellGrid grid;
     const Position* position;
-    const Float4* velocity;  ///< v [m/s]; w: radius [m]
-    const Float4* omega;     ///< ω [rad/s]; w: 1/m [1/kg], 0 for a fixed particle
-    float radius = 0;        ///< common radius of all particles [m]; 0 if they differ
+    const Float4* velocity;               ///< v [m/s]; w: radius [m]
+    const Float4* omega;                  ///< ω [rad/s]; w: 1/m [1/kg], 0 for a fixed particle
+    float radius = 0;                     ///< common radius of all particles [m]; 0 if they differ
+    const std::uint8_t* ghost = nullptr;  ///< see Particles; nullptr if there are none
+
+    HILDA_HD bool is_ghost(std::uint32_t k) const { return ghost != nullptr && ghost[k] != 0; }
 };
 
 /// The force laws and surfaces that the contact loop reads

@@ -157,6 +157,7 @@ struct AdvanceView {
     StepParameters step;
     /// Receives the force and the torque of each particle about its centre [N, N m]; nullptr without clumps
     Load* total = nullptr;
+    const std::uint8_t* ghost = nullptr;  ///< see Particles; only on the CPU
 };
 
 /// Advances all particles on a back end other than the CPU, which has sweep(); see loops.hpp. The loads of a

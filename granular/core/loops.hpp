@@ -187,7 +187,7 @@ void find_loads(Backend on, const ParticleView& particles, const PairView& pairs
 
 template <class Backend>
 void add_contacts(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws,
-                  ContactSums* out)
+                  ContactPart* out)
 {
     const auto unit = static_cast<float>(particles.grid.unit);
     par::for_each(on, watch_blocks(pairs.count),

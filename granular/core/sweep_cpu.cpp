@@ -148,7 +148,12 @@ struct AdvancePacks {
             store4<full>(arrays.position + first, valid, at);
             if (arrays.orientation != nullptr) rotate_pack<full>(first, valid, moved.rotation);
         }
-        return select(w[3] > zero, m.v.dot(m.v), zero);
+        Pack v2 = select(w[3] > zero, m.v.dot(m.v), zero);
+        // Ghosts are advanced like the others, because a branch costs more, and replaced afterwards.
+        if (arrays.ghost != nullptr)
+            for (int k = 0; k < lanes; ++k)
+                if (arrays.ghost[first + row<full>(k, valid)] != 0) v2.v[k] = 0;
+        return v2;
     }
 
     /// Advances `valid` ≤ lanes particles from `first` on.

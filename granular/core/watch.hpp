@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Sums over particles and contacts for the watch over a run: energies, momentum, loads of boundaries and
-/// fixed particles. Each call sums one block of fixed size in double precision; the caller adds the blocks in
-/// their order, so that a sum does not depend on the number of threads.
+/// fixed particles. Each call sums one block. The sums are those of FixedSum: they depend neither on the order
+/// of the particles nor on the number of threads or processes.
 
 #pragma once
 
+#include "granular/backend/fixed_sum.hpp"
 #include "granular/core/clump.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
 
@@ -27,24 +28,45 @@ struct ParticleSums {
     double rate = 0;            ///< largest |v|/R [1/s]
     double force_power = 0;     ///< Σ F·v of the applied forces [W]
     Vec3 force = {0, 0, 0};     ///< Σ F of the applied forces [N]
+};
+/// Part of ParticleSums
+struct ParticlePart {
+    FixedSum mass, momentum_size, force_power;
+    FixedVec momentum, moment, force;
+    double rate = 0;
 
-    HILDA_HD ParticleSums& operator+=(const ParticleSums& o)
+    HILDA_HD ParticlePart& operator+=(const ParticlePart& o)
     {
         mass += o.mass, momentum += o.momentum, moment += o.moment, momentum_size += o.momentum_size;
         rate = larger(rate, o.rate), force_power += o.force_power, force += o.force;
         return *this;
+    }
+    ParticleSums value() const
+    {
+        return {.mass = mass.value(),
+                .momentum = momentum.value(),
+                .moment = moment.value(),
+                .momentum_size = momentum_size.value(),
+                .rate = rate,
+                .force_power = force_power.value(),
+                .force = force.value()};
     }
 };
 
 /// Kinetic energy of the particles that are not fixed: translation and rotation [J]
 struct KineticSums {
     double translation = 0, rotation = 0;
+};
+/// Part of KineticSums
+struct KineticPart {
+    FixedSum translation, rotation;
 
-    HILDA_HD KineticSums& operator+=(const KineticSums& o)
+    HILDA_HD KineticPart& operator+=(const KineticPart& o)
     {
         translation += o.translation, rotation += o.rotation;
         return *this;
     }
+    KineticSums value() const { return {translation.value(), rotation.value()}; }
 };
 
 /// Sums over the contacts
@@ -53,12 +75,18 @@ struct ContactSums {
     double tangential = 0;  ///< energy of the springs of friction, rolling and spin [J]
     double contacts = 0,
            deep = 0;  ///< number of all contacts, and of those with an overlap above deep_overlap
+};
+/// Part of ContactSums
+struct ContactPart {
+    FixedSum normal, tangential;
+    double contacts = 0, deep = 0;
 
-    HILDA_HD ContactSums& operator+=(const ContactSums& o)
+    HILDA_HD ContactPart& operator+=(const ContactPart& o)
     {
         normal += o.normal, tangential += o.tangential, contacts += o.contacts, deep += o.deep;
         return *this;
     }
+    ContactSums value() const { return {normal.value(), tangential.value(), contacts, deep}; }
 };
 constexpr float deep_overlap = 0.05f;  ///< over the smaller radius
 
@@ -66,12 +94,18 @@ constexpr float deep_overlap = 0.05f;  ///< over the smaller radius
 struct ExternalSums {
     Vec3 F = {0, 0, 0};            ///< [N]
     double before = 0, after = 0;  ///< power with the velocities of the previous and of the next move [W]
+};
+/// Part of ExternalSums
+struct ExternalPart {
+    FixedVec F;
+    FixedSum before, after;
 
-    HILDA_HD ExternalSums& operator+=(const ExternalSums& o)
+    HILDA_HD ExternalPart& operator+=(const ExternalPart& o)
     {
         F += o.F, before += o.before, after += o.after;
         return *this;
     }
+    ExternalSums value() const { return {F.value(), before.value(), after.value()}; }
 };
 
 /// Velocities of a boundary
@@ -91,17 +125,17 @@ struct AddParticles {
     const Float4* force;  ///< by particle id [N]; nullptr if there are none
     const std::uint32_t* id;
     std::uint32_t count;
-    ParticleSums* out;
+    ParticlePart* out;
     ClumpView clumps = {};
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
-        ParticleSums sum;
+        ParticlePart sum;
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const Float4 v = particles.velocity[k], w = particles.omega[k];
             if (copy != nullptr) copy[k] = {{v.x, v.y, v.z}, {w.x, w.y, w.z}};
-            if (!(w.w > 0)) continue;
+            if (!(w.w > 0) || particles.is_ghost(k)) continue;
             const Vec3 v_k = to_double(v);
             if (force != nullptr) {
                 const Vec3 F = to_double(force[id[k]]);
@@ -119,7 +153,7 @@ struct AddParticles {
         }
         out[block] = sum;
     }
-    HILDA_HD void add_clump(ParticleSums& sum, const ClumpBody& b, Velocities& own) const
+    HILDA_HD void add_clump(ParticlePart& sum, const ClumpBody& b, Velocities& own) const
     {
         const Vec3 v = to_double(b.velocity);
         const double m = 1 / static_cast<double>(b.momentum.w);
@@ -141,12 +175,13 @@ struct AddKinetic {
     const Velocities* before;
     double s;
     std::uint32_t count;
-    KineticSums* out;
+    KineticPart* out;
     ClumpView clumps = {};
+    const std::uint8_t* ghost = nullptr;  ///< see Particles
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
-        KineticSums sum;
+        KineticPart sum;
         const std::uint32_t end = end_of_block(block, count);
         const auto product = [&](const Vec<float>& first, const Float4& after) {
             const Vec3 a{first.x, first.y, first.z}, b{after.x, after.y, after.z};
@@ -154,7 +189,7 @@ struct AddKinetic {
         };
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const Float4 v = velocity[k], w = omega[k];
-            if (!(w.w > 0)) continue;
+            if (!(w.w > 0) || (ghost != nullptr && ghost[k] != 0)) continue;
             const std::uint32_t c = clumps(k);
             if (c != no_clump && !clumps.represents(k, c)) continue;
             const double m = 1 / static_cast<double>(w.w),
@@ -181,13 +216,15 @@ struct HasBoundary {
     HILDA_HD bool operator()(std::uint32_t n) const { return (j[n] & PairView::boundary_bit) != 0; }
 };
 
-/// Whether a pair of particles has a fixed one
+/// Whether a pair of particles has a fixed one. Pairs of a ghost i belong to another process.
 struct HasFixedParticle {
     const std::uint32_t *i, *j;
     const Float4* omega;
+    const std::uint8_t* ghost = nullptr;  ///< see Particles
     HILDA_HD bool operator()(std::uint32_t n) const
     {
-        return (j[n] & PairView::boundary_bit) == 0 && !(omega[i[n]].w > 0 && omega[j[n]].w > 0);
+        return (j[n] & PairView::boundary_bit) == 0 && !(ghost != nullptr && ghost[i[n]] != 0) &&
+               !(omega[i[n]].w > 0 && omega[j[n]].w > 0);
     }
 };
 
@@ -199,26 +236,20 @@ struct AddBoundaryLoads {
     const BoundaryVelocity *before, *after;  ///< by boundary number; nullptr if none moves
     const std::uint32_t* which;              ///< numbers of these pairs
     std::uint32_t count;
-    ExternalSums* out;
+    ExternalPart* out;
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
-        ExternalSums sum;
+        ExternalPart sum;
         const std::uint32_t end = end_of_block(block, count);
-        // The load of a pair without contact is zero. There are two partial sums, because an addition waits
-        // for the one before it.
-        Vec3 even{0, 0, 0}, odd{0, 0, 0};
-        for (std::uint32_t k = block * watch_block; k < end; k += 2) {
-            even += to_double(pairs.load_of(which[k]).F);
-            if (k + 1 < end) odd += to_double(pairs.load_of(which[k + 1]).F);
+        for (std::uint32_t k = block * watch_block; k < end; ++k) {
+            if (pairs.in_contact[which[k]] == 0) continue;
+            sum.F += to_double(pairs.load_of(which[k]).F);
+            if (before != nullptr) add_power(sum, which[k]);
         }
-        sum.F = even + odd;
-        if (before != nullptr)
-            for (std::uint32_t k = block * watch_block; k < end; ++k)
-                if (pairs.in_contact[which[k]] != 0) add_power(sum, which[k]);
         out[block] = sum;
     }
-    HILDA_HD void add_power(ExternalSums& sum, std::uint32_t n) const
+    HILDA_HD void add_power(ExternalPart& sum, std::uint32_t n) const
     {
         const std::uint32_t k = pairs.j[n] & ~PairView::boundary_bit, b = surfaces.boundary_of(k),
                             i = pairs.i[n];
@@ -242,11 +273,11 @@ struct AddFixedLoads {
     PairView pairs;
     const std::uint32_t* which;  ///< numbers of these pairs
     std::uint32_t count;
-    ExternalSums* out;
+    ExternalPart* out;
 
     HILDA_HD void operator()(std::uint32_t block) const
     {
-        ExternalSums sum;
+        ExternalPart sum;
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const std::uint32_t n = which[k];
@@ -271,10 +302,10 @@ struct AddFixedLoads {
 
 /// Contact sums of all pairs at the positions for which the histories hold, one block per element of `out`
 void add_contacts(par::Cpu, const ParticleView& particles, const PairView& pairs, const LawView& laws,
-                  ContactSums* out);
+                  ContactPart* out);
 /// The same for the other back ends; see loops.hpp.
 template <class Backend>
 void add_contacts(Backend on, const ParticleView& particles, const PairView& pairs, const LawView& laws,
-                  ContactSums* out);
+                  ContactPart* out);
 
 }  // namespace hilda::granular

@@ -237,7 +237,7 @@ std::size_t World::bytes_needed(std::size_t n, bool rotation_laws, bool orientat
                                 sizeof(Species) + sizeof(std::uint32_t),
                      of_search = sizeof(Float4) + sizeof(std::uint64_t) + 5 * sizeof(std::uint32_t) +
                                  contacts * sizeof(SavedContact),
-                     of_watch = sizeof(Velocities) + sizeof(ParticleSums) / 64., of_sweep = sizeof(Load),
+                     of_watch = sizeof(Velocities) + sizeof(ParticlePart) / 64., of_sweep = sizeof(Load),
                      of_pair = 2 * sizeof(std::uint32_t) + sizeof(Float4) + 2,
                      of_load = sizeof(Load) + 2 * sizeof(std::uint32_t);
     const double each = of_state + of_search + of_watch + of_sweep + pairs * of_pair + loads * of_load +

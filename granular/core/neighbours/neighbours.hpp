@@ -25,6 +25,9 @@ struct Particles {
     par::Array<Backend, Float4> acc, alpha;  ///< of the previous step; empty if the scheme does not use them
     par::Array<Backend, Float4> orientation, orientation_compensation;  ///< (e0, e); empty unless stored
     par::Array<Backend, Position> position_at_build;  ///< positions at the last neighbour search
+    /// 1 for a copy of a particle of another process, which advances it; empty if there are none. Two of them
+    /// are no pair, nor is one with a boundary.
+    par::Array<Backend, std::uint8_t> ghost;
     std::uint32_t count = 0;
 
     void resize(std::uint32_t n)
@@ -37,7 +40,7 @@ struct Particles {
     {
         return position.bytes() + velocity.bytes() + omega.bytes() + compensation.bytes() + species.bytes() +
                id.bytes() + acc.bytes() + alpha.bytes() + orientation.bytes() +
-               orientation_compensation.bytes() + position_at_build.bytes();
+               orientation_compensation.bytes() + position_at_build.bytes() + ghost.bytes();
     }
 };
 
@@ -92,7 +95,12 @@ constexpr double max_cells = 0x7fffffff;  ///< of all replicas
 template <class Backend>
 ParticleView particle_view(const Domain& domain, const Particles<Backend>& p)
 {
-    return {domain.grid, p.position.data(), p.velocity.data(), p.omega.data(), domain.radius};
+    return {.grid = domain.grid,
+            .position = p.position.data(),
+            .velocity = p.velocity.data(),
+            .omega = p.omega.data(),
+            .radius = domain.radius,
+            .ghost = p.ghost.size() > 0 ? p.ghost.data() : nullptr};
 }
 
 /// Input of a neighbour search. Pointers refer to the memory of the back end.
@@ -125,6 +133,8 @@ public:
     std::size_t bytes() const;
     /// A copy of the positions in memory that is not used between two searches
     Position* position_copy() { return reinterpret_cast<Position*>(scratch.data()); }
+    /// Indices of the particles after the last search by those before it
+    const std::uint32_t* new_indices() const { return new_index.data(); }
 
 private:
     void sort(const SearchInput& input, Particles<Backend>& particles);

@@ -54,6 +54,7 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
         permute(p.id);
     if (p.acc.size() > 0) permute(p.acc), permute(p.alpha);
     if (p.orientation.size() > 0) permute(p.orientation), permute(p.orientation_compensation);
+    if (p.ghost.size() > 0) permute(p.ghost);
     p.position_at_build.resize(n);
     par::copy_bytes(on, p.position_at_build.data(), p.position.data(), n * sizeof(Position));
     par::for_each(on, n, detail::Invert{order.data(), new_index.data()});
@@ -125,7 +126,8 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         .near = input.near,
         .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()},
         .clump_of = input.clump_of,
-        .id = p.id.data()};
+        .id = p.id.data(),
+        .ghost = p.ghost.size() > 0 ? p.ghost.data() : nullptr};
     counts.resize(n);
     pairs.start.resize(n + 1);
     // The histories have been saved. Their memory keeps the partners that are found.

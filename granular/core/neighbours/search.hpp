@@ -31,6 +31,7 @@ struct Search {
     BoundaryBlockView near;
     SearchedRows<Backend> rows;
     const std::uint32_t *clump_of, *id;  ///< see AssignCell
+    const std::uint8_t* ghost;           ///< see Particles; nullptr if there are none
 
     /// The partners of particle k among the particles from `first` to `last` - 1. If k is small, all of them
     /// have the same periodic image.
@@ -106,6 +107,10 @@ struct Search {
     template <class F>
     HILDA_HD void operator()(std::uint32_t k, const F& f) const
     {
+        if (ghost != nullptr && ghost[k] != 0)
+            return find(k, [&](std::uint32_t other) {
+                if ((other & PairView::boundary_bit) == 0 && ghost[other] == 0) f(other);
+            });
         const std::uint32_t own = clump_of == nullptr ? no_clump : clump_of[id[k]];
         if (own == no_clump) return find(k, f);
         find(k, [&](std::uint32_t other) {

@@ -6,6 +6,7 @@
 #include "granular/case/case_schema.hpp"
 #include "granular/cosim/remote_exchange.hpp"
 #include "granular/cosim/soil.hpp"
+#include "granular/distributed/processes.hpp"
 #include "granular/program/arguments.hpp"
 #include "granular/program/cases.hpp"
 #include "granular/program/export_lammps.hpp"
@@ -149,7 +150,20 @@ int run_case(const Options& o)
     return run(options, read(), read);
 }
 
-int run_program(int argc, char** argv)
+/// Refuses what a run on several processes does not support, and makes its engine one of all processes.
+void share(Options& o, Processes& processes, bool is_validation)
+{
+    const auto refuse = [&](const std::string& what) {
+        throw io::UsageError("mpirun: " + what + " on one process only, got " +
+                             std::to_string(processes.count()) + " processes");
+    };
+    if (is_validation) refuse("the validation " + o.run.file + " runs");
+    if (o.device.kind != Device::cpu) refuse("--device " + o.device_name + " is possible");
+    if (o.exchanges) refuse("--exchange is possible");
+    o.device.source = &processes.engines();
+}
+
+int run_program(int argc, char** argv, Processes* processes)
 {
     Options o;
     if (const auto code = read_arguments(argc, argv, o)) return *code;
@@ -170,6 +184,7 @@ int run_program(int argc, char** argv)
         exports ? export_case(o) : print_text(o);
         return io::exit_code::done;
     }
+    if (processes != nullptr) share(o, *processes, validation != nullptr);
     try {
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();
@@ -183,6 +198,18 @@ int run_program(int argc, char** argv)
     }
 }
 
+/// Of the processes after the first one. An error ends all of them: the others would wait for a message.
+int serve_first(Processes& processes)
+{
+    int code = io::exit_code::done;
+    const int failed = io::run_program([&] {
+        code = processes.serve();
+        return io::exit_code::done;
+    });
+    if (failed != io::exit_code::done) processes.abort(io::exit_code::numerical_failure);
+    return code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
@@ -192,5 +219,14 @@ int main(int argc, char** argv)
     // The memory of large arrays and texts returns to the system when they are freed.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
-    return io::run_program([&] { return run_program(argc, argv); });
+    std::unique_ptr<Processes> processes;
+    const int started = io::run_program([&] {
+        processes = start_processes(argc, argv);
+        return io::exit_code::done;
+    });
+    if (started != io::exit_code::done) return started;
+    if (processes != nullptr && !processes->is_first()) return serve_first(*processes);
+    const int code = io::run_program([&] { return run_program(argc, argv, processes.get()); });
+    if (processes != nullptr) processes->end(code);
+    return code;
 }

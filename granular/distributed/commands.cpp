@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/distributed/commands.hpp"
+
+#include "io/error.hpp"
+#include "io/message.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace hilda::granular {
+
+namespace {
+
+Meshes read_meshes(Lists& from)
+{
+    Meshes m;
+    m.triangle = from.next<MeshTriangle>(), m.vertex = from.next<Vec3>();
+    m.vertex_normal = from.next<Vec3>(), m.fan_start = from.next<std::uint32_t>();
+    m.fan = from.next<std::uint32_t>(), m.part = from.next<Meshes::Part>();
+    return m;
+}
+
+/// Makes a call in a process that is not the first one.
+void make_call(RankEngine& e, const Command& c, Lists lists)
+{
+    switch (c.call) {
+        case Call::set_laws: {
+            const auto laws = lists.next<PairLaw>();
+            return e.set_laws(laws, lists.next<std::uint8_t>(), static_cast<std::uint32_t>(c.flag));
+        }
+        case Call::set_meshes:
+            return e.set_meshes(std::make_shared<Meshes>(read_meshes(lists)));
+        case Call::set_boundaries:
+            e.set_boundaries(lists.next<Boundary>());
+            return;
+        case Call::set_forces:
+            return e.set_forces(lists.next<Float4>());
+        case Call::set_watched:
+            return e.set_watched(c.flag != 0);
+        case Call::scatter:
+            return e.scatter(nullptr, c.domain, c.flag != 0);
+        case Call::gather:
+            return e.gather(nullptr);
+        case Call::find_neighbours:
+            try {
+                e.find_neighbours(c.domain);
+            } catch (const LeftDomain&) {  // of all processes; the first one reports it
+            }
+            return;
+        case Call::restore_list:
+            return e.restore_list(c.domain);
+        case Call::find_loads:
+            return e.find_loads(c.domain, c.h, c.flag != 0, c.path);
+        case Call::advance:
+            e.advance(c.step);
+            return;
+        case Call::largest_displacement:
+            e.largest_displacement();
+            return;
+        case Call::free_boundary_wrenches:
+            e.free_boundary_wrenches(c.domain);
+            return;
+        case Call::external_sums: {
+            const auto before = lists.next<BoundaryVelocity>();
+            e.external_sums(c.domain, before, lists.next<BoundaryVelocity>());
+            return;
+        }
+        case Call::particle_sums:
+            e.particle_sums(c.domain, c.flag != 0);
+            return;
+        case Call::contact_sums:
+            e.contact_sums(c.domain, c.h);
+            return;
+        case Call::kinetic_sums:
+            e.kinetic_sums(c.s);
+            return;
+        case Call::total_bytes:
+            e.total_bytes();
+            return;
+        case Call::make_engine:
+        case Call::delete_engine:
+        case Call::end:
+            break;
+    }
+    throw std::logic_error("a call for all engines");
+}
+
+/// A call with short lists; longer ones follow.
+struct Message {
+    Command command;
+    char lists[640] = {};
+};
+
+void send(const Communicator& all, Command command, const Lists& lists)
+{
+    std::string bytes = lists.bytes();
+    command.bytes = bytes.size();
+    Message m{.command = command};
+    std::memcpy(m.lists, bytes.data(), std::min(bytes.size(), sizeof m.lists));
+    all.broadcast(&m, sizeof m);
+    if (bytes.size() > sizeof m.lists) all.broadcast(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+int serve_engines(const Communicator& all)
+{
+    std::map<int, RankEngine> engines;
+    for (;;) {
+        Message m;
+        all.broadcast(&m, sizeof m);
+        const Command& c = m.command;
+        std::string bytes(m.lists, std::min<std::size_t>(c.bytes, sizeof m.lists));
+        bytes.resize(c.bytes);
+        if (bytes.size() > sizeof m.lists) all.broadcast(bytes.data(), bytes.size());
+        if (c.call == Call::end) return c.flag;
+        if (c.call == Call::delete_engine) {
+            engines.erase(c.engine);
+        } else if (c.call == Call::make_engine) {
+            omp_set_num_threads(c.flag);
+            engines.try_emplace(c.engine, all);
+        } else {
+            make_call(engines.at(c.engine), c, Lists(std::move(bytes)));
+        }
+    }
+}
+
+void end_processes(const Communicator& all, int code) { send(all, {.call = Call::end, .flag = code}, {}); }
+
+namespace {
+
+/// Makes the engine with this number in the other processes. The first one has to follow.
+const Communicator& made_by_others(const Communicator& all, int number)
+{
+    send(all, {.call = Call::make_engine, .engine = number, .flag = omp_get_max_threads()}, {});
+    return all;
+}
+
+}  // namespace
+
+FirstEngine::FirstEngine(const Communicator& all, int number)
+    : all(all), number(number), own(made_by_others(all, number))
+{}
+
+FirstEngine::~FirstEngine() { call({.call = Call::delete_engine}); }
+
+void FirstEngine::call(Command command, const Lists& lists) const
+{
+    command.engine = number;
+    send(all, command, lists);
+}
+
+template <class F>
+auto FirstEngine::both(const Command& command, const Lists& lists, const F& f) const
+{
+    call(command, lists);
+    all.in_call = true;
+    if constexpr (std::is_void_v<decltype(f())>) {
+        f();
+        all.in_call = false;
+    } else {
+        decltype(auto) result = f();
+        all.in_call = false;
+        return result;
+    }
+}
+
+Arrays<par::Cpu>& FirstEngine::arrays()
+{
+    if (!whole_is_current) {
+        both({.call = Call::gather}, {}, [&] { own.gather(&whole); });
+        whole_is_current = true;
+    }
+    return whole;
+}
+
+void FirstEngine::arrays_modified() { whole_is_current = true, ranks_are_current = false; }
+
+void FirstEngine::scatter(const Domain& domain, bool keeps_list)
+{
+    if (domain.small < domain.largest)
+        throw io::InvalidInput(
+            "mpirun: particles that are larger than the cells are not supported by a run on several "
+            "processes; radii from " +
+            std::to_string(domain.small) + " m to " + std::to_string(domain.largest) + " m");
+    both({.call = Call::scatter, .domain = domain, .flag = keeps_list ? 1 : 0}, {},
+         [&] { own.scatter(&whole, domain, keeps_list); });
+    ranks_are_current = true;
+}
+
+void FirstEngine::set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
+                           std::uint32_t materials)
+{
+    Lists lists;
+    lists.add(laws), lists.add(law_of);
+    both({.call = Call::set_laws, .flag = static_cast<std::int32_t>(materials)}, lists,
+         [&] { own.set_laws(laws, law_of, materials); });
+}
+
+void FirstEngine::set_meshes(std::shared_ptr<const Meshes> meshes)
+{
+    Lists lists;
+    lists.add(meshes->triangle), lists.add(meshes->vertex), lists.add(meshes->vertex_normal);
+    lists.add(meshes->fan_start), lists.add(meshes->fan), lists.add(meshes->part);
+    both({.call = Call::set_meshes}, lists, [&] { own.set_meshes(std::move(meshes)); });
+}
+
+bool FirstEngine::set_boundaries(const std::vector<Boundary>& boundaries)
+{
+    if (boundaries.size() == last_boundaries.size() &&
+        (boundaries.empty() ||
+         std::memcmp(static_cast<const void*>(boundaries.data()), last_boundaries.data(),
+                     boundaries.size() * sizeof(Boundary)) == 0))
+        return false;
+    last_boundaries = boundaries;
+    Lists lists;
+    lists.add(boundaries);
+    both({.call = Call::set_boundaries}, lists, [&] { own.set_boundaries(boundaries); });
+    return true;
+}
+
+void FirstEngine::set_forces(const std::vector<Float4>& forces)
+{
+    Lists lists;
+    lists.add(forces);
+    both({.call = Call::set_forces}, lists, [&] { own.set_forces(forces); });
+}
+
+void FirstEngine::set_attached(const std::vector<AttachedParticle>& attached)
+{
+    if (!attached.empty())
+        throw io::InvalidInput(
+            "mpirun: particles attached to a boundary are not supported by a run on several processes, got " +
+            std::to_string(attached.size()));
+}
+
+void FirstEngine::move_attached(const Domain&, const std::vector<BoundaryPose>&) {}
+
+void FirstEngine::set_clumps(const Domain&, const ClumpTables& tables)
+{
+    if (!tables.of.empty())
+        throw io::InvalidInput("mpirun: clumps are not supported by a run on several processes");
+}
+
+void FirstEngine::find_neighbours(const Domain& domain)
+{
+    const bool scatters = !ranks_are_current;
+    if (scatters) scatter(domain, false);
+    last_domain = domain;
+    const std::optional<LeftDomain> lost =
+        both({.call = Call::find_neighbours, .domain = domain}, {}, [&]() -> std::optional<LeftDomain> {
+            try {
+                own.find_neighbours(domain);
+            } catch (const LeftDomain& e) {
+                return e;
+            }
+            return {};
+        });
+    whole_is_current = false;
+    if (!lost) return;
+    // After a scatter there is no list yet from which the arrays could be collected.
+    if (scatters) whole_is_current = true, ranks_are_current = false;
+    throw LeftDomain{*lost};
+}
+
+void FirstEngine::find_loads(const Domain& domain, float h, bool store, double path)
+{
+    if (!ranks_are_current) {
+        scatter(domain, true);
+        both({.call = Call::restore_list, .domain = domain}, {}, [&] { own.restore_list(domain); });
+    }
+    last_domain = domain;
+    whole_is_current = false;
+    both({.call = Call::find_loads, .domain = domain, .h = h, .flag = store ? 1 : 0, .path = path}, {},
+         [&] { own.find_loads(domain, h, store, path); });
+}
+
+float FirstEngine::advance(const StepParameters& step)
+{
+    whole_is_current = false;
+    return both({.call = Call::advance, .step = step}, {}, [&] { return own.advance(step); });
+}
+
+float FirstEngine::largest_displacement()
+{
+    if (!ranks_are_current) {
+        scatter(last_domain, true);
+        both({.call = Call::restore_list, .domain = last_domain}, {}, [&] { own.restore_list(last_domain); });
+    }
+    return both({.call = Call::largest_displacement}, {}, [&] { return own.largest_displacement(); });
+}
+
+const std::vector<Wrench>& FirstEngine::free_boundary_wrenches(const Domain& domain)
+{
+    both({.call = Call::free_boundary_wrenches, .domain = domain}, {},
+         [&] { own.free_boundary_wrenches(domain); });
+    return own.last_wrenches();
+}
+
+void FirstEngine::set_watched(bool on)
+{
+    both({.call = Call::set_watched, .flag = on ? 1 : 0}, {}, [&] { own.set_watched(on); });
+}
+
+float FirstEngine::take_largest_overlap() { return own.take_largest_overlap(); }
+
+ExternalSums FirstEngine::external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
+                                        const std::vector<BoundaryVelocity>& after)
+{
+    Lists lists;
+    lists.add(before), lists.add(after);
+    return both({.call = Call::external_sums, .domain = domain}, lists,
+                [&] { return own.external_sums(domain, before, after); });
+}
+
+ParticleSums FirstEngine::particle_sums(const Domain& domain, bool only_forces)
+{
+    return both({.call = Call::particle_sums, .domain = domain, .flag = only_forces ? 1 : 0}, {},
+                [&] { return own.particle_sums(domain, only_forces); });
+}
+
+ContactSums FirstEngine::contact_sums(const Domain& domain, float h)
+{
+    return both({.call = Call::contact_sums, .domain = domain, .h = h}, {},
+                [&] { return own.contact_sums(domain, h); });
+}
+
+KineticSums FirstEngine::kinetic_sums(double s)
+{
+    return both({.call = Call::kinetic_sums, .s = s}, {}, [&] { return own.kinetic_sums(s); });
+}
+
+std::size_t FirstEngine::bytes() const
+{
+    return static_cast<std::size_t>(both({.call = Call::total_bytes}, {}, [&] { return own.total_bytes(); }));
+}
+
+}  // namespace hilda::granular

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The division of the domain among processes: blocks of cells with weights, and recursive coordinate
+/// bisection by Zoltan.
+
+#pragma once
+
+#include "granular/core/particles.hpp"
+#include "granular/distributed/communicator.hpp"
+
+#include <cstdint>
+#include <vector>
+
+struct Zoltan_Struct;
+
+namespace hilda::granular {
+
+/// Cubes of cells; the last ones along an axis may have fewer cells.
+struct BlockGrid {
+    std::int32_t edge = 1;               ///< cells along an edge of a block
+    std::int32_t blocks[3] = {1, 1, 1};  ///< number of blocks along each axis
+
+    BlockGrid() = default;
+    BlockGrid(const CellGrid& grid, std::int32_t edge) : edge(edge)
+    {
+        for (int k = 0; k < 3; ++k) blocks[k] = (grid.cells[k] + edge - 1) / edge;
+    }
+    /// Number of the block of a cell
+    std::uint32_t block_of(std::int32_t x, std::int32_t y, std::int32_t z) const
+    {
+        return static_cast<std::uint32_t>((z / edge * blocks[1] + y / edge) * blocks[0] + x / edge);
+    }
+    double count() const { return double(blocks[0]) * blocks[1] * blocks[2]; }
+};
+
+/// The work of a block
+struct BlockWork {
+    std::uint32_t block;
+    float weight;
+};
+
+class Partition {
+public:
+    static constexpr std::int32_t edges[] = {8, 4, 2};  ///< of blocks [cells]
+
+    explicit Partition(const Communicator& all);
+    ~Partition();
+    Partition(const Partition&) = delete;
+    Partition& operator=(const Partition&) = delete;
+
+    /// Distributes the blocks. `work`: blocks and weights of this process; each block is that of one process
+    /// only.
+    void make(const BlockGrid& grid, const std::vector<BlockWork>& work);
+    const BlockGrid& grid() const { return blocks; }
+
+    /// The process that has a block
+    int owner(std::uint32_t block) const
+    {
+        int& known = owners[block];
+        return known >= 0 ? known : known = found_owner(block);
+    }
+
+private:
+    struct Objects;
+    int found_owner(std::uint32_t block) const;
+    void place(std::uint32_t block, double* x) const;
+
+    const Communicator& all;
+    Zoltan_Struct* zoltan;
+    BlockGrid blocks;
+    bool is_cut = false;              ///< whether Zoltan has cut the domain; there were blocks with work
+    mutable std::vector<int> owners;  ///< -1: not known yet
+};
+
+}  // namespace hilda::granular

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The engine of one process of several. It has the particles in its part of the domain and copies (ghosts) of
+/// those in the cells around it.
+///
+/// Each process evaluates all pairs with a particle of its own, in the order of cells and ids, which is that
+/// of a single process. The sums of the loads and the contact histories have therefore the same bits. Two
+/// processes evaluate a pair of their particles from the same numbers and have the same history of it.
+///
+/// All functions are called by all processes in the same order. Sums and maxima are those over all processes,
+/// in the first one; the largest displacement and exceptions are those of all in each process.
+
+#pragma once
+
+#include "granular/backend/engine_impl.hpp"
+#include "granular/distributed/partition.hpp"
+#include "granular/distributed/plan.hpp"
+#include "granular/distributed/records.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace hilda::granular {
+
+class RankEngine final : public EngineOn<par::Cpu> {
+public:
+    explicit RankEngine(const Communicator& all) : all(all), partition(all) {}
+
+    /// Distributes the arrays of the first process, which are nullptr in the others. A neighbour search has
+    /// to follow; with `keeps_list` it is restore_list().
+    void scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool keeps_list);
+    /// Collects the arrays in the first process, in the order of a single process; nullptr in the others
+    void gather(Arrays<par::Cpu>* whole);
+
+    /// Also moves particles to the processes in whose part they are.
+    void find_neighbours(const Domain& domain) override;
+    /// Builds the list for the positions of the last search.
+    void restore_list(const Domain& domain);
+
+    void find_loads(const Domain& domain, float h, bool store, double path) override;
+    float advance(const StepParameters& step) override;
+    float largest_displacement() override;
+    const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) override;
+    const std::vector<Wrench>& last_wrenches() const { return wrenches; }
+    float take_largest_overlap() override;
+    ExternalSums external_sums(const Domain& domain, const std::vector<BoundaryVelocity>& before,
+                               const std::vector<BoundaryVelocity>& after) override;
+    ParticleSums particle_sums(const Domain& domain, bool only_forces) override;
+    ContactSums contact_sums(const Domain& domain, float h) override;
+    KineticSums kinetic_sums(double s) override;
+    /// Of all processes
+    double total_bytes() const;
+
+    /// Largest work of a process over the mean of all, minus 1: as it was predicted when the domain was
+    /// divided last, and as it was measured since then
+    struct Imbalance {
+        double predicted = 0, measured = 0;
+        long partitions = 0;  ///< number of divisions of the domain during the run
+    };
+    const Imbalance& imbalance() const { return balance; }
+
+private:
+    bool is_ghost(std::uint32_t k) const { return own.particle.ghost.data()[k] != 0; }
+    int owner_of(const CellGrid& g, std::uint32_t cell) const
+    {
+        return partition.owner(partition.grid().block_of(g.x_of(cell), g.y_of(cell), g.z_of(cell)));
+    }
+    void assign_cells(const Domain& domain);
+    void divide_again(const Domain& domain);
+    void rebuild(const Domain& domain);
+    struct Ghosts;
+    Ghosts find_ghosts(const CellGrid& grid, const std::vector<ParticleRecord>& particles) const;
+    bool is_surrounded(const CellGrid& grid, std::uint32_t block) const;
+    void send_ghosts();
+    double work_of(std::uint32_t k) const;
+
+    const Communicator& all;
+    Partition partition;
+    UsedArrays used;
+    CellGrid grid;  ///< of the last search
+    std::optional<Plan> ghost_plan;
+    std::vector<std::uint32_t> sent;      ///< indices of the particles that are ghosts of others, in order
+    std::vector<std::uint32_t> received;  ///< indices of the ghosts, in the order of the messages
+    std::vector<GhostState> to_send, to_receive;
+    std::vector<MPI_Request> requests;
+    mutable std::vector<signed char> surrounded;  ///< by block, see is_surrounded(); -1: not known
+    par::Array<par::Cpu, std::uint32_t> keys, order;
+
+    float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
+    double busy = 0, work = 0;  ///< CPU time of the steps since the last division [s], and their work
+    long steps = 0;             ///< since then
+    Imbalance balance;
+};
+
+}  // namespace hilda::granular

@@ -46,6 +46,7 @@ const std::map<std::string, std::set<std::string>> granular_folders = {
     {"backend", {"core"}},
     {"core", {"backend"}},
     {"force_models", {"backend", "core"}},
+    {"distributed", {"backend", "core"}},
     {"mesh", {"backend", "core"}},
     {"clumps", {"backend", "core", "mesh"}},
     {"world", {"backend", "core", "clumps", "mesh"}},
@@ -58,7 +59,8 @@ const std::map<std::string, std::set<std::string>> granular_folders = {
     {"running", {"backend", "case", "core", "fields", "insertion", "reading", "stages", "world"}},
     {"cosim", {"case", "core", "running", "stages", "world"}},
     {"program",
-     {"backend", "case", "core", "cosim", "fields", "reading", "running", "stages", "validations", "world"}},
+     {"backend", "case", "core", "cosim", "distributed", "fields", "reading", "running", "stages",
+       "validations", "world"}},
     {"benchmarks", {"cosim", "mesh", "running", "world"}},
 };
 const std::pair<std::string, std::string> mutual_folders = {"backend", "core"};
@@ -83,6 +85,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "core/neighbours",
       "cosim",
       "core/surfaces",
+      "distributed",
       "fields",
       "force_models",
       "force_models/cohesion",

@@ -61,6 +61,9 @@ public:
     virtual Arrays<par::Cpu>& arrays() = 0;
     /// Transfers the arrays to the device after the caller has modified arrays().
     virtual void arrays_modified() = 0;
+    /// Called before the other operations of a step: distributes arrays that were modified, if there are
+    /// several processes.
+    virtual void prepare(const Domain&) {}
 
     /// law_of: index of the law of a pair of materials, materials × materials
     virtual void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,

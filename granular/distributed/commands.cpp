@@ -40,6 +40,10 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
             return;
         case Call::set_forces:
             return e.set_forces(lists.next<Float4>());
+        case Call::set_attached:
+            return e.set_attached(lists.next<AttachedParticle>());
+        case Call::move_attached:
+            return e.move_attached(c.domain, lists.next<BoundaryPose>());
         case Call::set_watched:
             return e.set_watched(c.flag != 0);
         case Call::scatter:
@@ -184,10 +188,19 @@ void FirstEngine::arrays_modified() { whole_is_current = true, ranks_are_current
 void FirstEngine::scatter(const Domain& domain, bool keeps_list)
 {
     if (domain.small < domain.largest)
+        throw io::InvalidInput(io::formatted(
+            "mpirun: a run on several processes does not support particles that are larger than the cells of "
+            "most others (radius in /particles, /fill and /insert), got radii up to %g m; those up to %g m "
+            "are "
+            "possible",
+            domain.largest, domain.small));
+    const std::int32_t edge = Partition::edges[std::size(Partition::edges) - 1];
+    if (const double most = BlockGrid(domain.grid, edge).count(); most < all.size())
         throw io::InvalidInput(
-            "mpirun: particles that are larger than the cells are not supported by a run on several "
-            "processes; radii from " +
-            std::to_string(domain.small) + " m to " + std::to_string(domain.largest) + " m");
+            io::formatted("mpirun: the domain (/domain) has %.0f blocks of %d x %d x %d cells, so that there "
+                          "can be at most "
+                          "as many processes, got %d",
+                          most, edge, edge, edge, all.size()));
     both({.call = Call::scatter, .domain = domain, .flag = keeps_list ? 1 : 0}, {},
          [&] { own.scatter(&whole, domain, keeps_list); });
     ranks_are_current = true;
@@ -231,27 +244,32 @@ void FirstEngine::set_forces(const std::vector<Float4>& forces)
     both({.call = Call::set_forces}, lists, [&] { own.set_forces(forces); });
 }
 
-void FirstEngine::set_attached(const std::vector<AttachedParticle>& attached)
+void FirstEngine::set_attached(const std::vector<AttachedParticle>& particles)
 {
-    if (!attached.empty())
-        throw io::InvalidInput(
-            "mpirun: particles attached to a boundary are not supported by a run on several processes, got " +
-            std::to_string(attached.size()));
+    Lists lists;
+    lists.add(particles);
+    both({.call = Call::set_attached}, lists, [&] { own.set_attached(particles); });
 }
 
-void FirstEngine::move_attached(const Domain&, const std::vector<BoundaryPose>&) {}
+/// Each process moves its particles and its ghosts.
+void FirstEngine::move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses)
+{
+    whole_is_current = false;
+    Lists lists;
+    lists.add(poses);
+    both({.call = Call::move_attached, .domain = domain}, lists, [&] { own.move_attached(domain, poses); });
+}
 
 void FirstEngine::set_clumps(const Domain&, const ClumpTables& tables)
 {
     if (!tables.of.empty())
-        throw io::InvalidInput("mpirun: clumps are not supported by a run on several processes");
+        throw io::InvalidInput("mpirun: a run on several processes does not support clumps (/clumps)");
 }
 
 void FirstEngine::find_neighbours(const Domain& domain)
 {
     const bool scatters = !ranks_are_current;
     if (scatters) scatter(domain, false);
-    last_domain = domain;
     const std::optional<LeftDomain> lost =
         both({.call = Call::find_neighbours, .domain = domain}, {}, [&]() -> std::optional<LeftDomain> {
             try {
@@ -268,13 +286,17 @@ void FirstEngine::find_neighbours(const Domain& domain)
     throw LeftDomain{*lost};
 }
 
+void FirstEngine::prepare(const Domain& domain)
+{
+    if (ranks_are_current) return;
+    // After an insertion there is no list, and a search follows.
+    const bool has_list = whole.particle.position_at_build.size() == whole.particle.count;
+    scatter(domain, has_list);
+    if (has_list) both({.call = Call::restore_list, .domain = domain}, {}, [&] { own.restore_list(domain); });
+}
+
 void FirstEngine::find_loads(const Domain& domain, float h, bool store, double path)
 {
-    if (!ranks_are_current) {
-        scatter(domain, true);
-        both({.call = Call::restore_list, .domain = domain}, {}, [&] { own.restore_list(domain); });
-    }
-    last_domain = domain;
     whole_is_current = false;
     both({.call = Call::find_loads, .domain = domain, .h = h, .flag = store ? 1 : 0, .path = path}, {},
          [&] { own.find_loads(domain, h, store, path); });
@@ -288,10 +310,6 @@ float FirstEngine::advance(const StepParameters& step)
 
 float FirstEngine::largest_displacement()
 {
-    if (!ranks_are_current) {
-        scatter(last_domain, true);
-        both({.call = Call::restore_list, .domain = last_domain}, {}, [&] { own.restore_list(last_domain); });
-    }
     return both({.call = Call::largest_displacement}, {}, [&] { return own.largest_displacement(); });
 }
 

@@ -18,6 +18,8 @@ enum class Call : std::int32_t {
     set_meshes,
     set_boundaries,
     set_forces,
+    set_attached,
+    move_attached,
     set_watched,
     scatter,
     gather,
@@ -97,6 +99,7 @@ public:
 
     Arrays<par::Cpu>& arrays() override;
     void arrays_modified() override;
+    void prepare(const Domain& domain) override;
     void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                   std::uint32_t materials) override;
     void set_meshes(std::shared_ptr<const Meshes> meshes) override;
@@ -133,7 +136,6 @@ private:
     mutable RankEngine own;
     Arrays<par::Cpu> whole;
     bool whole_is_current = true, ranks_are_current = false;
-    Domain last_domain;
     std::vector<Boundary> last_boundaries;
 };
 

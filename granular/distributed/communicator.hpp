@@ -13,6 +13,13 @@
 
 namespace hilda::granular {
 
+/// Work of the busiest process over the mean, minus 1: as predicted when the domain was divided last, and as
+/// measured since the division before it
+struct Imbalance {
+    double predicted = 0, measured = 0;
+    long divisions = 0;  ///< of the domain during the run
+};
+
 class Communicator {
 public:
     explicit Communicator(MPI_Comm communicator);
@@ -82,6 +89,7 @@ public:
 
     /// Whether the processes are in a call of the first one: an exception there leaves them out of step.
     mutable bool in_call = false;
+    mutable Imbalance imbalance;  ///< of the last engine
 
 private:
     /// MPI's names of a type and of its +=; they are never freed.

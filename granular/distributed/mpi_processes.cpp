@@ -3,6 +3,7 @@
 #include "granular/distributed/commands.hpp"
 #include "granular/distributed/processes.hpp"
 #include "io/error.hpp"
+#include "io/message.hpp"
 #include "io/registry.hpp"
 
 #include <signal.h>
@@ -98,6 +99,15 @@ public:
     {
         if (all.in_call) abort(code);
         end_processes(all, code);
+    }
+    std::string report() const override
+    {
+        const Imbalance& i = all.imbalance;
+        return io::formatted(
+            "%d processes: work of the busiest over the mean, minus 1: %.2g measured, %.2g predicted for the "
+            "last "
+            "of %ld divisions of the domain",
+            all.size(), i.measured, i.predicted, i.divisions);
     }
     void abort(int code) override
     {

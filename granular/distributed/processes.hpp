@@ -7,6 +7,7 @@
 #include "granular/backend/engine.hpp"
 
 #include <memory>
+#include <string>
 
 namespace hilda::granular {
 
@@ -22,6 +23,8 @@ public:
     virtual int serve() = 0;
     /// Of the first process: ends the others with the same exit code.
     virtual void end(int code) = 0;
+    /// One line about the division of the work, for --verbose
+    virtual std::string report() const = 0;
     /// Ends all processes with this exit code, at once.
     [[noreturn]] virtual void abort(int code) = 0;
 };

@@ -192,7 +192,11 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
         return keeps_list ? p.position_at_build.data()[k].cell : p.position.data()[k].cell;
     };
     if (whole != nullptr) {
-        const Particles<par::Cpu>& p = whole->particle;
+        Particles<par::Cpu>& p = whole->particle;
+        if (!keeps_list) {
+            p.position_at_build.resize(p.count);
+            std::copy_n(p.position.data(), p.count, p.position_at_build.data());
+        }
         sizes.particles = p.count;
         sizes.used = {p.acc.size() > 0, p.orientation.size() > 0};
         for (const std::int32_t edge : Partition::edges) {
@@ -264,6 +268,8 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
         list.add(*index.find(c.i), (c.j & PairView::boundary_bit) != 0 ? c.j : *index.find(c.j), c);
     list.put(own.pairs, rotation_laws, internal);
     own.pairs.start.resize(0);
+    grid = g;
+    ghost_plan.reset();
     busy = work = 0, steps = 0;
 }
 
@@ -296,9 +302,9 @@ void RankEngine::divide_again(const Domain& domain)
     constexpr long least_steps = 200;
     constexpr double most = 0.05;
     if (steps < least_steps || own.pairs.start.size() == 0) return;
-    balance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
+    all.imbalance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
     const double rate = work > 0 ? busy / work : 0;
-    const double imbalance = balance.measured;
+    const double imbalance = all.imbalance.measured;
     busy = work = 0, steps = 0;
     if (imbalance <= most) return;
 
@@ -337,8 +343,8 @@ void RankEngine::divide_again(const Domain& domain)
     for (const BlockWork& b : blocks) next.emplace_back(partition.owner(b.block), b);
     double own_weight = 0;
     for (const BlockWork& b : exchanged(all, std::move(next))) own_weight += b.weight;
-    balance.predicted = all.reduced_for_all(Spread(own_weight)).imbalance(all.size());
-    ++balance.partitions;
+    all.imbalance.predicted = all.reduced_for_all(Spread(own_weight)).imbalance(all.size());
+    ++all.imbalance.divisions;
 }
 
 void RankEngine::find_neighbours(const Domain& domain)
@@ -535,6 +541,7 @@ void RankEngine::rebuild(const Domain& domain)
 /// Sends the state of the particles that are ghosts of other processes.
 void RankEngine::send_ghosts()
 {
+    if (!ghost_plan) return;  // before the first search
     Particles<par::Cpu>& p = own.particle;
     requests.clear();
     GhostState* to = to_receive.data();
@@ -640,17 +647,42 @@ struct Rows {
     std::vector<Float4> history, rotation, internal;
 };
 
+/// Sorts contacts by their particles i.
+void sort_by_i(Pairs<par::Cpu>& pairs)
+{
+    std::vector<std::uint32_t> order(pairs.count);
+    for (std::uint32_t n = 0; n < pairs.count; ++n) order[n] = n;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return pairs.i.data()[a] < pairs.i.data()[b]; });
+    const auto permute = [&](auto& array) {
+        std::remove_reference_t<decltype(array)> sorted(array.size());
+        for (std::uint32_t n = 0; n < array.size(); ++n) sorted.data()[n] = array.data()[order[n]];
+        array = std::move(sorted);
+    };
+    permute(pairs.i), permute(pairs.j), permute(pairs.history), permute(pairs.rotation_history);
+    permute(pairs.internal);
+}
+
 }  // namespace
 
 void RankEngine::gather(Arrays<par::Cpu>* whole)
 {
     Rows rows;
     const Pairs<par::Cpu>& q = own.pairs;
-    const std::uint32_t* const id = own.particle.id.data();
+    const std::uint32_t *const id = own.particle.id.data(), *start = q.start.data();
+    std::vector<std::uint32_t> of_contacts;
+    if (q.start.size() == 0) {  // before the first search: the contacts, in the order of their particles i
+        sort_by_i(own.pairs);
+        for (std::uint32_t k = 0, n = 0; k <= own.particle.count; ++k) {
+            while (n < q.count && q.i.data()[n] < k) ++n;
+            of_contacts.push_back(n);
+        }
+        start = of_contacts.data();
+    }
     for (std::uint32_t k = 0; k < own.particle.count; ++k) {
         if (is_ghost(k)) continue;
         rows.particles.push_back(record_of(own.particle, k));
-        const std::uint32_t begin = q.start.data()[k], end = q.start.data()[k + 1];
+        const std::uint32_t begin = start[k], end = start[k + 1];
         rows.lengths.push_back(end - begin);
         for (std::uint32_t n = begin; n < end; ++n) {
             const std::uint32_t j = q.j.data()[n];
@@ -659,7 +691,7 @@ void RankEngine::gather(Arrays<par::Cpu>* whole)
         const auto append = [&](auto& to, const auto& from, bool has) {
             if (has) to.insert(to.end(), from.data() + begin, from.data() + end);
         };
-        append(rows.law, q.law, !one_law), append(rows.in_contact, q.in_contact, true);
+        append(rows.law, q.law, !one_law && q.start.size() > 0), append(rows.in_contact, q.in_contact, true);
         append(rows.history, q.history, true), append(rows.rotation, q.rotation_history, rotation_laws);
         append(rows.internal, q.internal, internal);
     }
@@ -723,7 +755,7 @@ void RankEngine::gather(Arrays<par::Cpu>* whole)
             const std::uint32_t j = r.j[from];
             to.i.data()[pair] = k;
             to.j.data()[pair] = (j & PairView::boundary_bit) != 0 ? j : index[j];
-            if (!one_law) to.law.data()[pair] = r.law[from];
+            if (!one_law) to.law.data()[pair] = from < r.law.size() ? r.law[from] : std::uint8_t{0};
             to.in_contact.data()[pair] = r.in_contact[from], to.history.data()[pair] = r.history[from];
             if (rotation_laws) to.rotation_history.data()[pair] = r.rotation[from];
             if (internal) to.internal.data()[pair] = r.internal[from];

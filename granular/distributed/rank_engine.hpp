@@ -51,14 +51,6 @@ public:
     /// Of all processes
     double total_bytes() const;
 
-    /// Largest work of a process over the mean of all, minus 1: as it was predicted when the domain was
-    /// divided last, and as it was measured since then
-    struct Imbalance {
-        double predicted = 0, measured = 0;
-        long partitions = 0;  ///< number of divisions of the domain during the run
-    };
-    const Imbalance& imbalance() const { return balance; }
-
 private:
     bool is_ghost(std::uint32_t k) const { return own.particle.ghost.data()[k] != 0; }
     int owner_of(const CellGrid& g, std::uint32_t cell) const
@@ -89,7 +81,6 @@ private:
     float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
     double busy = 0, work = 0;  ///< CPU time of the steps since the last division [s], and their work
     long steps = 0;             ///< since then
-    Imbalance balance;
 };
 
 }  // namespace hilda::granular

@@ -138,13 +138,14 @@ void export_case(const Options& o)
                     c.boundaries.size(), o.run.output.c_str());
 }
 
-int run_case(const Options& o)
+int run_case(const Options& o, int processes)
 {
     make_engine(o.device);  // reports a missing device before the case is read
     const Environment here = environment_of(o, o.run.file);
     const std::string text = text_of_case(o.run.file);
     RunOptions options = o.run;
     options.provenance = provenance(o.command_line, o.threads, o.device_name);
+    if (processes > 1) options.provenance["processes"] = processes;
     const auto read = [&] { return read_run(options, text, here); };
     if (o.exchanges) return exchange(options, read());
     return run(options, read(), read);
@@ -188,9 +189,12 @@ int run_program(int argc, char** argv, Processes* processes)
     try {
         std::optional<io::Interrupt> interrupt;
         if (validation == nullptr) interrupt.emplace();
-        return validation != nullptr
-                   ? validate(*validation, {.full = o.full, .device = o.device}, o.run.quiet, o.run.strict)
-                   : run_case(o);
+        if (validation != nullptr)
+            return validate(*validation, {.full = o.full, .device = o.device}, o.run.quiet, o.run.strict);
+        const int code = run_case(o, processes != nullptr ? processes->count() : 1);
+        if (processes != nullptr && o.run.verbose && !o.run.quiet)
+            io::message("hilda: " + processes->report() + '\n');
+        return code;
     } catch (const DeviceError& e) {
         throw io::NotAvailable("--device " + o.device_name + ": " + e.what());
     } catch (const std::bad_alloc&) {

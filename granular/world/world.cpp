@@ -368,6 +368,7 @@ void World::one_step()
     place_parts();
     send_boundaries();
     send_clumps();
+    engine->prepare(domain);
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
         find_loads(true);

@@ -205,4 +205,5 @@ def main():
     print(f"CPU time of the runs: {os.times().children_user + os.times().children_system:.1f} s")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -79,6 +79,14 @@ def children(process):
     return sorted(found)
 
 
+def is_running(process):
+    try:
+        with open(f"/proc/{process}/stat", encoding="ascii") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] not in ("Z", "X")
+    except OSError:
+        return False
+
+
 def same_bytes(runs, counts):
     options, end = ("--replica-rows", "--quiet"), ("--end", f"{STEP * STEPS:.12g}")
     for name, case in CASES.items():
@@ -117,7 +125,7 @@ def lost_process(runs):
         expect(process.returncode != 0, "mpirun reports the process that was killed")
         expect("another process of the run has disappeared" in err, f"the others say why they end: {err}")
         time.sleep(0.2)
-        expect(not any(os.path.exists(f"/proc/{rank}") for rank in ranks), "all processes have ended")
+        expect(not any(is_running(rank) for rank in ranks), "all processes have ended")
     end = f"{STEP * 400:.12g}"
     short = runs.case("short", **dict(DAM, end=STEP * 4000))
     runs.finish(short, "--output", "whole", "--quiet", "--end", end)

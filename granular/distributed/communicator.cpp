@@ -36,19 +36,22 @@ Communicator::Communicator(MPI_Comm communicator) : communicator(communicator)
     // A test takes about 0.1 us. Where there are more processes than cores, the one that is awaited may need
     // this core.
     const bool shares_cores = processes_here > omp_get_num_procs();
-    tests = shares_cores ? 20 : 200;
+    tests = shares_cores ? 5 : 100;
     prctl(PR_SET_TIMERSLACK, 1000);  // [ns], of the sleep below; the default is 50 us
 }
 
 void Communicator::wait(MPI_Request* requests, int count) const
 {
+    constexpr long longest = 200'000;  // [ns]
+    long sleep = 2'000;
     for (int k = 0;; ++k) {
         int done = 0;
         MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE);
         if (done != 0) return;
         if (k < tests) continue;
-        const timespec pause{.tv_sec = 0, .tv_nsec = k < 2 * tests ? 2'000 : 20'000};
+        const timespec pause{.tv_sec = 0, .tv_nsec = sleep};
         nanosleep(&pause, nullptr);
+        sleep = std::min(longest, 2 * sleep);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "granular/distributed/rank_engine.hpp"
 
 #include "granular/core/neighbours/cells.hpp"
+#include "granular/distributed/lists.hpp"
 
 #include <ctime>
 
@@ -9,6 +10,8 @@
 #include <utility>
 
 namespace hilda::granular {
+
+using namespace detail;
 
 namespace {
 
@@ -75,98 +78,9 @@ struct Outside {
     }
 };
 
-/// Number of a cell in the order of replicas, z, y, x
-std::uint64_t key_of(const CellGrid& g, std::uint32_t cell, std::uint16_t replica)
-{
-    const auto n = [&](int k) { return static_cast<std::uint64_t>(g.cells[k]); };
-    return ((replica * n(2) + static_cast<std::uint64_t>(g.z_of(cell))) * n(1) +
-            static_cast<std::uint64_t>(g.y_of(cell))) *
-               n(0) +
-           static_cast<std::uint64_t>(g.x_of(cell));
-}
-
-/// A value and the process to which it goes
-template <class T>
-using Addressed = std::vector<std::pair<int, T>>;
-
-/// Sends the values and returns those of the other processes.
-template <class T>
-std::vector<T> exchanged(const Communicator& all, Addressed<T> values)
-{
-    std::stable_sort(values.begin(), values.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<int> to;
-    std::vector<T> of;
-    for (const auto& [process, value] : values) to.push_back(process), of.push_back(value);
-    return Plan(all, std::move(to)).exchange(of);
-}
-
-template <class T>
-void assign(par::Array<par::Cpu, T>& to, const std::vector<T>& from)
-{
-    to.resize(from.size());
-    std::copy(from.begin(), from.end(), to.data());
-}
-
-/// Contacts with the indices of their particles
-struct ContactList {
-    std::vector<std::uint32_t> i, j;
-    std::vector<Float4> history, rotation, internal;
-
-    void add(std::uint32_t of_i, std::uint32_t of_j, const ContactHistory& c)
-    {
-        i.push_back(of_i), j.push_back(of_j);
-        history.push_back(c.history), rotation.push_back(c.rotation), internal.push_back(c.internal);
-    }
-    /// As the contacts of a list before a neighbour search
-    void put(Pairs<par::Cpu>& pairs, bool has_rotation, bool has_internal) const
-    {
-        pairs.count = static_cast<std::uint32_t>(i.size());
-        assign(pairs.i, i), assign(pairs.j, j), assign(pairs.history, history);
-        if (has_rotation)
-            assign(pairs.rotation_history, rotation);
-        else
-            pairs.rotation_history.resize(0);
-        if (has_internal)
-            assign(pairs.internal, internal);
-        else
-            pairs.internal.resize(0);
-        pairs.in_contact.resize(i.size());
-        par::fill(par::Cpu(), pairs.in_contact.data(), i.size(), std::uint8_t{1});
-    }
-};
-
-ContactHistory contact_of(const Pairs<par::Cpu>& pairs, const std::uint32_t* id, std::uint32_t n)
-{
-    const std::uint32_t j = pairs.j.data()[n];
-    return {.i = id[pairs.i.data()[n]],
-            .j = (j & PairView::boundary_bit) != 0 ? j : id[j],
-            .history = pairs.history.data()[n],
-            .rotation = value_of(pairs.rotation_history, n),
-            .internal = value_of(pairs.internal, n)};
-}
-
-/// Indices of particles by id
-class Index {
-public:
-    void add(std::uint32_t id, std::uint32_t index) { entries.emplace_back(id, index); }
-    void sort() { std::sort(entries.begin(), entries.end()); }
-    std::optional<std::uint32_t> find(std::uint32_t id) const
-    {
-        const auto at = std::lower_bound(entries.begin(), entries.end(), std::pair(id, std::uint32_t{0}));
-        if (at == entries.end() || at->first != id) return {};
-        return at->second;
-    }
-
-private:
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> entries;
-};
-
-constexpr std::uint32_t none = ~std::uint32_t{0};
-
 }  // namespace
 
-/// The ghosts of this process, and the places of its own particles that are ghosts of others
+/// The own particles that are ghosts of other processes
 struct RankEngine::Ghosts {
     std::vector<int> to;               ///< process, ascending
     std::vector<std::uint32_t> which;  ///< places in the list of the particles
@@ -177,100 +91,6 @@ struct RankEngine::Ghosts {
 double RankEngine::work_of(std::uint32_t k) const
 {
     return 4 + static_cast<double>(own.pairs.start.data()[k + 1] - own.pairs.start.data()[k]);
-}
-
-void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool keeps_list)
-{
-    const CellGrid& g = domain.grid;
-    struct Sizes {
-        std::uint32_t edge, particles;
-        UsedArrays used;
-    } sizes{};
-    std::vector<BlockWork> loaded;
-    const auto cell = [&](std::uint32_t k) {
-        const Particles<par::Cpu>& p = whole->particle;
-        return keeps_list ? p.position_at_build.data()[k].cell : p.position.data()[k].cell;
-    };
-    if (whole != nullptr) {
-        Particles<par::Cpu>& p = whole->particle;
-        if (!keeps_list) {
-            p.position_at_build.resize(p.count);
-            std::copy_n(p.position.data(), p.count, p.position_at_build.data());
-        }
-        sizes.particles = p.count;
-        sizes.used = {p.acc.size() > 0, p.orientation.size() > 0};
-        for (const std::int32_t edge : Partition::edges) {
-            const BlockGrid blocks(g, edge);
-            sizes.edge = static_cast<std::uint32_t>(edge);
-            std::vector<float> weight(static_cast<std::size_t>(blocks.count()));
-            for (std::uint32_t k = 0; k < p.count; ++k)
-                ++weight[blocks.block_of(g.x_of(cell(k)), g.y_of(cell(k)), g.z_of(cell(k)))];
-            loaded.clear();
-            for (std::uint32_t b = 0; b < weight.size(); ++b)
-                if (weight[b] > 0) loaded.push_back({b, weight[b]});
-            constexpr std::size_t each = 64;  // blocks of a process
-            if (loaded.size() >= each * static_cast<std::size_t>(all.size())) break;
-        }
-    }
-    all.broadcast(&sizes, sizeof sizes);
-    used = sizes.used;
-    partition.make(BlockGrid(g, static_cast<std::int32_t>(sizes.edge)), loaded);
-    surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
-
-    Addressed<ParticleRecord> particles;
-    Addressed<ContactHistory> contacts;
-    if (whole != nullptr) {
-        const Particles<par::Cpu>& p = whole->particle;
-        const Pairs<par::Cpu>& pairs = whole->pairs;
-        std::vector<int> owner(p.count);
-        particles.reserve(p.count);
-        for (std::uint32_t k = 0; k < p.count; ++k) {
-            owner[k] = owner_of(g, cell(k));
-            particles.emplace_back(owner[k], record_of(p, k));
-        }
-        for (std::uint32_t n = 0; n < pairs.count; ++n) {
-            if (pairs.in_contact.data()[n] == 0) continue;
-            const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
-            const ContactHistory c = contact_of(pairs, p.id.data(), n);
-            contacts.emplace_back(owner[i], c);
-            if ((j & PairView::boundary_bit) == 0 && owner[j] != owner[i]) contacts.emplace_back(owner[j], c);
-        }
-    }
-    const std::vector<ParticleRecord> mine = exchanged(all, std::move(particles));
-    const std::vector<ContactHistory> with_mine = exchanged(all, std::move(contacts));
-
-    // All particles of the contacts; the partners of other processes are placeholders until rebuild() finds
-    // them as ghosts.
-    Index index;
-    for (std::uint32_t k = 0; k < mine.size(); ++k) index.add(mine[k].id, k);
-    index.sort();
-    std::vector<std::uint32_t> partners;
-    for (const ContactHistory& c : with_mine)
-        for (const std::uint32_t id : {c.i, c.j})
-            if ((id & PairView::boundary_bit) == 0 && !index.find(id)) partners.push_back(id);
-    std::sort(partners.begin(), partners.end());
-    partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
-    const auto count = static_cast<std::uint32_t>(mine.size() + partners.size());
-    resize(own.particle, count, used);
-    own.particle.ghost.resize(count);
-    for (std::uint32_t k = 0; k < mine.size(); ++k)
-        set_record(own.particle, k, mine[k]), own.particle.ghost.data()[k] = 0;
-    for (std::uint32_t k = 0; k < partners.size(); ++k) {
-        const auto at = static_cast<std::uint32_t>(mine.size()) + k;
-        ParticleRecord placeholder;
-        placeholder.id = partners[k];
-        set_record(own.particle, at, placeholder), own.particle.ghost.data()[at] = 1;
-        index.add(partners[k], at);
-    }
-    index.sort();
-    ContactList list;
-    for (const ContactHistory& c : with_mine)
-        list.add(*index.find(c.i), (c.j & PairView::boundary_bit) != 0 ? c.j : *index.find(c.j), c);
-    list.put(own.pairs, rotation_laws, internal);
-    own.pairs.start.resize(0);
-    grid = g;
-    ghost_plan.reset();
-    busy = work = 0, steps = 0;
 }
 
 /// Assigns the own particles to their cells. Throws LeftDomain in all processes if one is outside the domain.
@@ -331,7 +151,7 @@ void RankEngine::divide_again(const Domain& domain)
     };
     merge(blocks);
     for (const BlockWork& b : blocks) to.emplace_back(partition.owner(b.block), b);
-    blocks = exchanged(all, std::move(to));
+    blocks = exchanged(all, to);
     std::sort(blocks.begin(), blocks.end(),
               [](const BlockWork& a, const BlockWork& b) { return a.block < b.block; });
     merge(blocks);
@@ -342,7 +162,7 @@ void RankEngine::divide_again(const Domain& domain)
     Addressed<BlockWork> next;
     for (const BlockWork& b : blocks) next.emplace_back(partition.owner(b.block), b);
     double own_weight = 0;
-    for (const BlockWork& b : exchanged(all, std::move(next))) own_weight += b.weight;
+    for (const BlockWork& b : exchanged(all, next)) own_weight += b.weight;
     all.imbalance.predicted = all.reduced_for_all(Spread(own_weight)).imbalance(all.size());
     ++all.imbalance.divisions;
 }
@@ -403,14 +223,13 @@ bool RankEngine::is_surrounded(const CellGrid& grid, std::uint32_t block) const
     return all_own;
 }
 
-/// Exchanges the particles in the cells next to those of other processes.
-RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g,
-                                           const std::vector<ParticleRecord>& particles) const
+/// The particles in the cells next to those of other processes, which they need as ghosts
+RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g, const std::vector<Position>& particles) const
 {
     std::vector<std::pair<int, std::uint32_t>> to;
     std::vector<int> processes;
     for (std::uint32_t k = 0; k < particles.size(); ++k) {
-        const std::uint32_t cell = particles[k].position.cell;
+        const std::uint32_t cell = particles[k].cell;
         const std::int32_t at[] = {g.x_of(cell), g.y_of(cell), g.z_of(cell)};
         if (is_surrounded(g, partition.grid().block_of(at[0], at[1], at[2]))) continue;
         processes.clear();
@@ -433,13 +252,7 @@ RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g,
     }
     std::sort(to.begin(), to.end());
     Ghosts ghosts;
-    std::vector<GhostRecord> records;
-    for (const auto& [process, k] : to) {
-        const ParticleRecord& p = particles[k];
-        ghosts.to.push_back(process), ghosts.which.push_back(k);
-        records.push_back({p.position, p.velocity, p.omega, p.species, p.id});
-    }
-    ghosts.records = std::move(records);
+    for (const auto& [process, k] : to) ghosts.to.push_back(process), ghosts.which.push_back(k);
     return ghosts;
 }
 
@@ -447,24 +260,23 @@ RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g,
 void RankEngine::rebuild(const Domain& domain)
 {
     Particles<par::Cpu>& p = own.particle;
+    Pairs<par::Cpu>& pairs = own.pairs;
     const CellGrid& g = grid = domain.grid;
     const std::uint32_t before = p.count, *const id = p.id.data();
-    // stays[k]: place of particle k in the new list
-    std::vector<std::uint32_t> stays(before, none);
-    std::vector<ParticleRecord> mine;
+    // The particles that stay, and the place of each particle among them
+    std::vector<std::uint32_t> stay, place(before, none);
     std::vector<int> owner(before, all.rank());
     Addressed<ParticleRecord> leaving;
-    mine.reserve(before);
+    stay.reserve(before);
     for (std::uint32_t k = 0; k < before; ++k) {
         if (is_ghost(k)) continue;
         owner[k] = owner_of(g, p.position.data()[k].cell);
         if (owner[k] == all.rank())
-            stays[k] = static_cast<std::uint32_t>(mine.size()), mine.push_back(record_of(p, k));
+            place[k] = static_cast<std::uint32_t>(stay.size()), stay.push_back(k);
         else
             leaving.emplace_back(owner[k], record_of(p, k));
     }
     Addressed<ContactHistory> leaving_contacts;
-    const Pairs<par::Cpu>& pairs = own.pairs;
     for (std::uint32_t n = 0; !leaving.empty() && n < pairs.count; ++n) {
         if (pairs.in_contact.data()[n] == 0) continue;
         const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
@@ -474,67 +286,81 @@ void RankEngine::rebuild(const Domain& domain)
         send_to(owner[i]);
         if ((j & PairView::boundary_bit) == 0 && owner[j] != owner[i]) send_to(owner[j]);
     }
-    const std::vector<ParticleRecord> arrived = exchanged(all, std::move(leaving));
-    const std::vector<ContactHistory> arrived_contacts = exchanged(all, std::move(leaving_contacts));
-    Index others;
-    for (const ParticleRecord& r : arrived)
-        others.add(r.id, static_cast<std::uint32_t>(mine.size())), mine.push_back(r);
+    std::vector<ParticleRecord> added = exchanged(all, leaving);
+    const std::vector<ContactHistory> arrived = exchanged(all, leaving_contacts);
+    const auto staying = static_cast<std::uint32_t>(stay.size()),
+               first_ghost = staying + static_cast<std::uint32_t>(added.size());
 
-    Ghosts ghosts = find_ghosts(g, mine);
-    ghost_plan.emplace(all, std::move(ghosts.to));
-    const std::vector<GhostRecord> of_others = ghost_plan->exchange(ghosts.records);
-    const auto first_ghost = static_cast<std::uint32_t>(mine.size());
-    for (const GhostRecord& r : of_others) {
-        others.add(r.id, static_cast<std::uint32_t>(mine.size()));
-        mine.push_back({.position = r.position,
-                        .position_at_build = r.position,
-                        .velocity = r.velocity,
-                        .omega = r.omega,
-                        .species = r.species,
-                        .id = r.id});
+    std::vector<Position> places;
+    places.reserve(first_ghost);
+    for (const std::uint32_t k : stay) places.push_back(p.position.data()[k]);
+    for (const ParticleRecord& r : added) places.push_back(r.position);
+    Ghosts ghosts = find_ghosts(g, places);
+    std::vector<GhostRecord> records;
+    records.reserve(ghosts.which.size());
+    for (const std::uint32_t k : ghosts.which) {
+        const ParticleRecord r = k < staying ? record_of(p, stay[k]) : added[k - staying];
+        records.push_back({r.position, r.velocity, r.omega, r.species, r.id});
     }
+    ghost_plan.emplace(all, std::move(ghosts.to));
+    for (const GhostRecord& r : ghost_plan->exchange(records))
+        added.push_back({.position = r.position,
+                         .position_at_build = r.position,
+                         .velocity = r.velocity,
+                         .omega = r.omega,
+                         .species = r.species,
+                         .id = r.id});
+    Index others;
+    for (std::uint32_t k = 0; k < added.size(); ++k) others.add(added[k].id, staying + k);
     others.sort();
 
     // The contacts that this process had or has received, between particles that it has now
-    ContactList list;
-    Index all_ids;
-    bool has_all = false;
-    const auto place_of = [&](std::uint32_t of_id) -> std::uint32_t {
-        if (const auto at = others.find(of_id)) return *at;
-        if (!has_all) {
-            for (std::uint32_t k = 0; k < first_ghost; ++k) all_ids.add(mine[k].id, k);
-            all_ids.sort(), has_all = true;
-        }
-        return all_ids.find(of_id).value_or(none);
-    };
     const auto place_before = [&](std::uint32_t k) {
-        return stays[k] != none ? stays[k] : others.find(id[k]).value_or(none);
+        return place[k] != none ? place[k] : others.find(id[k]).value_or(none);
+    };
+    std::uint32_t contacts = 0;
+    const auto move_to = [&](auto& values, std::uint32_t n) {
+        if (n < values.size()) values.data()[contacts] = values.data()[n];
     };
     for (std::uint32_t n = 0; n < pairs.count; ++n) {
         if (pairs.in_contact.data()[n] == 0) continue;
         const std::uint32_t i = place_before(pairs.i.data()[n]), j = pairs.j.data()[n],
                             new_j = (j & PairView::boundary_bit) != 0 ? j : place_before(j);
-        if (i != none && new_j != none) list.add(i, new_j, contact_of(pairs, id, n));
+        if (i == none || new_j == none) continue;
+        pairs.i.data()[contacts] = i, pairs.j.data()[contacts] = new_j;
+        move_to(pairs.history, n), move_to(pairs.rotation_history, n), move_to(pairs.internal, n);
+        ++contacts;
     }
-    for (const ContactHistory& c : arrived_contacts) {
-        const std::uint32_t i = place_of(c.i), j = (c.j & PairView::boundary_bit) != 0 ? c.j : place_of(c.j);
-        if (i != none && j != none) list.add(i, j, c);
-    }
-    list.put(own.pairs, rotation_laws, internal);
+    Index all_ids;
+    for (std::uint32_t k = 0; !arrived.empty() && k < staying; ++k) all_ids.add(id[stay[k]], k);
+    all_ids.sort();
+    const auto place_of = [&](std::uint32_t of) {
+        if ((of & PairView::boundary_bit) != 0) return of;
+        const auto at = others.find(of);
+        return at ? *at : all_ids.find(of).value_or(none);
+    };
+    ContactList list;
+    for (const ContactHistory& c : arrived)
+        if (place_of(c.i) != none && place_of(c.j) != none) list.add(place_of(c.i), place_of(c.j), c);
+    const bool has_rotation = rotation_laws && (contacts == 0 || pairs.rotation_history.size() > 0),
+               has_internal = internal && (contacts == 0 || pairs.internal.size() > 0);
+    append(pairs.i, contacts, list.i), append(pairs.j, contacts, list.j);
+    append(pairs.history, contacts, list.history);
+    if (has_rotation) append(pairs.rotation_history, contacts, list.rotation);
+    if (has_internal) append(pairs.internal, contacts, list.internal);
+    pairs.count = static_cast<std::uint32_t>(contacts + list.i.size());
+    pairs.in_contact.resize(pairs.count);
+    par::fill(par::Cpu(), pairs.in_contact.data(), pairs.count, std::uint8_t{1});
 
-    const auto count = static_cast<std::uint32_t>(mine.size());
-    resize(p, count, used);
-    p.ghost.resize(count);
-    for (std::uint32_t k = 0; k < count; ++k)
-        set_record(p, k, mine[k]), p.ghost.data()[k] = k < first_ghost ? 0 : 1;
-    mine = {};
+    replace(p, stay, added, used);
+    for (std::uint32_t k = 0; k < p.count; ++k) p.ghost.data()[k] = k < first_ghost ? 0 : 1;
 
     Busy measures(busy);
     EngineOn::find_neighbours(domain);
     const std::uint32_t* const now = neighbours.new_indices();
     sent.clear(), received.clear();
     for (const std::uint32_t k : ghosts.which) sent.push_back(now[k]);
-    for (std::uint32_t k = first_ghost; k < count; ++k) received.push_back(now[k]);
+    for (std::uint32_t k = first_ghost; k < p.count; ++k) received.push_back(now[k]);
     to_send.resize(sent.size()), to_receive.resize(received.size());
 }
 
@@ -634,134 +460,6 @@ KineticSums RankEngine::kinetic_sums(double s) { return all.reduced(kinetic_part
 double RankEngine::total_bytes() const
 {
     return all.reduced_for_all(Spread(static_cast<double>(bytes()))).sum;
-}
-
-namespace {
-
-/// The particles of a process with their rows of the neighbour list
-struct Rows {
-    std::vector<ParticleRecord> particles;
-    std::vector<std::uint32_t> lengths;
-    std::vector<std::uint32_t> j;  ///< id, or surface with PairView::boundary_bit
-    std::vector<std::uint8_t> law, in_contact;
-    std::vector<Float4> history, rotation, internal;
-};
-
-/// Sorts contacts by their particles i.
-void sort_by_i(Pairs<par::Cpu>& pairs)
-{
-    std::vector<std::uint32_t> order(pairs.count);
-    for (std::uint32_t n = 0; n < pairs.count; ++n) order[n] = n;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return pairs.i.data()[a] < pairs.i.data()[b]; });
-    const auto permute = [&](auto& array) {
-        std::remove_reference_t<decltype(array)> sorted(array.size());
-        for (std::uint32_t n = 0; n < array.size(); ++n) sorted.data()[n] = array.data()[order[n]];
-        array = std::move(sorted);
-    };
-    permute(pairs.i), permute(pairs.j), permute(pairs.history), permute(pairs.rotation_history);
-    permute(pairs.internal);
-}
-
-}  // namespace
-
-void RankEngine::gather(Arrays<par::Cpu>* whole)
-{
-    Rows rows;
-    const Pairs<par::Cpu>& q = own.pairs;
-    const std::uint32_t *const id = own.particle.id.data(), *start = q.start.data();
-    std::vector<std::uint32_t> of_contacts;
-    if (q.start.size() == 0) {  // before the first search: the contacts, in the order of their particles i
-        sort_by_i(own.pairs);
-        for (std::uint32_t k = 0, n = 0; k <= own.particle.count; ++k) {
-            while (n < q.count && q.i.data()[n] < k) ++n;
-            of_contacts.push_back(n);
-        }
-        start = of_contacts.data();
-    }
-    for (std::uint32_t k = 0; k < own.particle.count; ++k) {
-        if (is_ghost(k)) continue;
-        rows.particles.push_back(record_of(own.particle, k));
-        const std::uint32_t begin = start[k], end = start[k + 1];
-        rows.lengths.push_back(end - begin);
-        for (std::uint32_t n = begin; n < end; ++n) {
-            const std::uint32_t j = q.j.data()[n];
-            rows.j.push_back((j & PairView::boundary_bit) != 0 ? j : id[j]);
-        }
-        const auto append = [&](auto& to, const auto& from, bool has) {
-            if (has) to.insert(to.end(), from.data() + begin, from.data() + end);
-        };
-        append(rows.law, q.law, !one_law && q.start.size() > 0), append(rows.in_contact, q.in_contact, true);
-        append(rows.history, q.history, true), append(rows.rotation, q.rotation_history, rotation_laws);
-        append(rows.internal, q.internal, internal);
-    }
-    if (!all.is_first()) {
-        all.send_to_first(rows.particles), all.send_to_first(rows.lengths), all.send_to_first(rows.j);
-        all.send_to_first(rows.law), all.send_to_first(rows.in_contact), all.send_to_first(rows.history);
-        all.send_to_first(rows.rotation), all.send_to_first(rows.internal);
-        return;
-    }
-
-    std::vector<Rows> of(static_cast<std::size_t>(all.size()));
-    of[0] = std::move(rows);
-    for (int from = 1; from < all.size(); ++from) {
-        Rows& r = of[static_cast<std::size_t>(from)];
-        r.particles = all.received<ParticleRecord>(from), r.lengths = all.received<std::uint32_t>(from);
-        r.j = all.received<std::uint32_t>(from), r.law = all.received<std::uint8_t>(from);
-        r.in_contact = all.received<std::uint8_t>(from), r.history = all.received<Float4>(from);
-        r.rotation = all.received<Float4>(from), r.internal = all.received<Float4>(from);
-    }
-    // The order of a single process: that of the cells of the last search, then of the ids
-    struct Place {
-        std::uint64_t key;
-        std::uint32_t id, process, number, begin;  ///< begin: first pair of its row in the lists
-        bool operator<(const Place& o) const { return std::pair(key, id) < std::pair(o.key, o.id); }
-    };
-    std::vector<Place> places;
-    std::uint32_t largest_id = 0;
-    std::size_t pairs = 0;
-    for (std::uint32_t from = 0; from < of.size(); ++from) {
-        const auto begin = static_cast<std::ptrdiff_t>(places.size());
-        std::uint32_t first_pair = 0;
-        for (std::uint32_t k = 0; k < of[from].particles.size(); ++k) {
-            const ParticleRecord& r = of[from].particles[k];
-            places.push_back(
-                {key_of(grid, r.position_at_build.cell, r.species.replica), r.id, from, k, first_pair});
-            first_pair += of[from].lengths[k];
-            largest_id = std::max(largest_id, r.id);
-        }
-        pairs += first_pair;
-        std::inplace_merge(places.begin(), places.begin() + begin, places.end());
-    }
-    std::vector<std::uint32_t> index(places.empty() ? 0 : std::size_t{largest_id} + 1, none);
-    Particles<par::Cpu>& p = whole->particle;
-    Pairs<par::Cpu>& to = whole->pairs;
-    const auto n = static_cast<std::uint32_t>(places.size());
-    resize(p, n, used);
-    to.count = static_cast<std::uint32_t>(pairs);
-    to.start.resize(n + std::size_t{1}), to.i.resize(pairs), to.j.resize(pairs);
-    to.law.resize(one_law ? 0 : pairs), to.in_contact.resize(pairs), to.history.resize(pairs);
-    to.rotation_history.resize(rotation_laws ? pairs : 0), to.internal.resize(internal ? pairs : 0);
-    for (std::uint32_t k = 0; k < n; ++k) {
-        index[places[k].id] = k;
-        set_record(p, k, of[places[k].process].particles[places[k].number]);
-    }
-    std::uint32_t pair = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-        const Rows& r = of[places[k].process];
-        to.start.data()[k] = pair;
-        const std::uint32_t begin = places[k].begin, end = begin + r.lengths[places[k].number];
-        for (std::uint32_t from = begin; from < end; ++from, ++pair) {
-            const std::uint32_t j = r.j[from];
-            to.i.data()[pair] = k;
-            to.j.data()[pair] = (j & PairView::boundary_bit) != 0 ? j : index[j];
-            if (!one_law) to.law.data()[pair] = from < r.law.size() ? r.law[from] : std::uint8_t{0};
-            to.in_contact.data()[pair] = r.in_contact[from], to.history.data()[pair] = r.history[from];
-            if (rotation_laws) to.rotation_history.data()[pair] = r.rotation[from];
-            if (internal) to.internal.data()[pair] = r.internal[from];
-        }
-    }
-    to.start.data()[n] = pair;
 }
 
 }  // namespace hilda::granular

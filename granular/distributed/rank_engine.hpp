@@ -61,7 +61,7 @@ private:
     void divide_again(const Domain& domain);
     void rebuild(const Domain& domain);
     struct Ghosts;
-    Ghosts find_ghosts(const CellGrid& grid, const std::vector<ParticleRecord>& particles) const;
+    Ghosts find_ghosts(const CellGrid& grid, const std::vector<Position>& particles) const;
     bool is_surrounded(const CellGrid& grid, std::uint32_t block) const;
     void send_ghosts();
     double work_of(std::uint32_t k) const;

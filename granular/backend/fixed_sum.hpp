@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Sums of floating-point numbers that do not depend on the order of the terms.
 ///
-/// A term is truncated to a multiple of 2^-140 and added to an integer of 256 bits. The sum of the integers is
-/// exact, so that the terms can be added in any order, in parts, by any number of threads or processes.
-/// The range is ±2^115. A term that is larger or not finite makes the sum NaN.
+/// A term is truncated to a multiple of 2^-140 and added to an integer of 256 bits. The sum of the integers
+/// is exact, so that the terms can be added in any order, in parts, by any number of threads or processes.
+/// Terms from 2^-87 on are exact. A term above 2^114 or not finite makes the sum NaN.
 
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Sums over particles and contacts for the watch over a run: energies, momentum, loads of boundaries and
-/// fixed particles. Each call sums one block. The sums are those of FixedSum: they depend neither on the order
-/// of the particles nor on the number of threads or processes.
+/// fixed particles. Each call sums one block. The sums are those of FixedSum: they depend neither on the
+/// order of the particles nor on the number of threads or processes.
 
 #pragma once
 

@@ -77,13 +77,13 @@ Partition::Partition(const Communicator& all) : all(all), zoltan(Zoltan_Create(a
 
 Partition::~Partition() { Zoltan_Destroy(&zoltan); }
 
-/// A place of a block that differs from those of the others along each axis, so that a cut never has to divide
-/// blocks at the same coordinate.
+/// A place of a block that differs from those of the others along each axis, so that a cut never has to
+/// divide blocks at the same coordinate.
 void Partition::place(std::uint32_t block, double* x) const
 {
     const double nx = blocks.blocks[0], ny = blocks.blocks[1], nz = blocks.blocks[2];
-    const double i = block % blocks.blocks[0], j = block / blocks.blocks[0] % blocks.blocks[1],
-                 k = block / blocks.blocks[0] / blocks.blocks[1];
+    const std::uint32_t row = block / blocks.blocks[0], layer = row / blocks.blocks[1];
+    const double i = block % blocks.blocks[0], j = row % blocks.blocks[1], k = layer;
     x[0] = i + (j + k / nz) / ny, x[1] = j + (k + i / nx) / nz, x[2] = k + (i + j / ny) / nx;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The engine of one process of several. It has the particles in its part of the domain and copies (ghosts) of
-/// those in the cells around it.
+/// The engine of one process of several. It has the particles in its part of the domain and copies (ghosts)
+/// of those in the cells around it.
 ///
 /// Each process evaluates all pairs with a particle of its own, in the order of cells and ids, which is that
 /// of a single process. The sums of the loads and the contact histories have therefore the same bits. Two

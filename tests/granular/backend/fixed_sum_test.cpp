@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/backend/fixed_sum.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using hilda::granular::FixedSum;
+
+TEST_CASE("a fixed sum does not depend on the order of its terms and parts", "[granular][fixed-sum]")
+{
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> mantissa(-1, 1);
+    std::uniform_int_distribution<int> exponent(-60, 60);
+    std::vector<double> terms(1000);
+    for (double& x : terms) x = std::ldexp(mantissa(random), exponent(random));
+    FixedSum whole;
+    for (const double x : terms) whole += x;
+    for (int k = 0; k < 10; ++k) {
+        std::shuffle(terms.begin(), terms.end(), random);
+        FixedSum parts[7], sum;
+        for (std::size_t n = 0; n < terms.size(); ++n) parts[n % 7] += terms[n];
+        for (const FixedSum& part : parts) sum += part;
+        CHECK(sum.value() == whole.value());
+    }
+    long double reference = 0;
+    for (const double x : terms) reference += x;
+    CHECK(whole.value() == Approx(static_cast<double>(reference)).epsilon(1e-15));
+}
+
+TEST_CASE("a fixed sum is exact, and rounds once", "[granular][fixed-sum]")
+{
+    for (const double x : {1., -1., 0.1, -0.1, 1e-25, 1e34, std::ldexp(1, -87), 0., 1 + 0x1p-52}) {
+        FixedSum one;
+        one += x;
+        CHECK(one.value() == x);
+    }
+    FixedSum cancels;
+    for (const double x : {1e30, 1e-12, -1e30}) cancels += x;
+    CHECK(cancels.value() == 1e-12);
+    // halfway between two numbers, to the even one; a little more, to the next one
+    FixedSum halfway;
+    for (const double x : {1., 0x1p-53}) halfway += x;
+    CHECK(halfway.value() == 1);
+    halfway += 0x1p-120;
+    CHECK(halfway.value() == 1 + 0x1p-52);
+}
+
+TEST_CASE("a fixed sum of a number that is not finite or too large is not a number", "[granular][fixed-sum]")
+{
+    for (const double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity(), 1e300}) {
+        FixedSum sum;
+        sum += 1;
+        sum += x;
+        CHECK(std::isnan(sum.value()));
+    }
+}

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Sums of floating-point numbers that do not depend on the order of the terms.
 ///
-/// A term is truncated to a multiple of 2^-140 and added to an integer of 256 bits. The sum of the integers
-/// is exact, so that the terms can be added in any order, in parts, by any number of threads or processes.
-/// Terms from 2^-87 on are exact. A term above 2^114 or not finite makes the sum NaN.
+/// A term is truncated to a multiple of 2^-140 and added to an integer of 256 bits, one for the positive
+/// terms and one for the negative ones. The integers are exact, so that the terms can be added in any
+/// order, in parts, by any number of threads or processes. Terms from 2^-87 on are exact. A term of 2^115
+/// or more or one that is not finite makes the sum NaN, as does an overflow of an integer.
 
 #pragma once
 
@@ -22,32 +23,26 @@ public:
         std::uint64_t bits = 0;
         memcpy(&bits, &x, sizeof bits);
         const int exponent = static_cast<int>(bits >> 52 & 0x7ff);
-        if (exponent == 0) return *this;  // zero, or below the unit
         std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | std::uint64_t{1} << 52;
         int shift = exponent - 1075 + unit_bits;
         if (shift < 0) {
-            if (shift <= -53) return *this;
+            if (shift <= -53) return *this;  // zero, or below the unit
             mantissa >>= -shift, shift = 0;
         }
-        if (shift > 64 * words - 1 - 53 - 1) {
+        if (shift > 64 * words - 53 - 1) {
             ++not_summed;
             return *this;
         }
+        std::uint64_t* const word = sum[bits >> 63];
         const int first = shift >> 6, within = shift & 63;
-        const std::uint64_t low = mantissa << within, high = within == 0 ? 0 : mantissa >> (64 - within);
-        // Two's complement: all bits are inverted, and 1 is added.
-        const std::uint64_t sign = std::uint64_t{0} - (bits >> 63);
-        std::uint64_t carry = bits >> 63;
-        for (int k = 0; k < words; ++k) {
-            const std::uint64_t term = ((k == first ? low : k == first + 1 ? high : 0) ^ sign);
-            add(k, term, carry);
-        }
+        add(word, first, mantissa << within);
+        if (first + 1 < words) add(word, first + 1, within == 0 ? 0 : mantissa >> (64 - within));
         return *this;
     }
     HILDA_HD FixedSum& operator+=(const FixedSum& o)
     {
-        std::uint64_t carry = 0;
-        for (int k = 0; k < words; ++k) add(k, o.word[k], carry);
+        for (int sign = 0; sign < 2; ++sign)
+            for (int k = 0; k < words; ++k) add(sum[sign], k, o.sum[sign][k]);
         not_summed += o.not_summed;
         return *this;
     }
@@ -56,20 +51,24 @@ public:
     double value() const
     {
         if (not_summed > 0) return NAN;
-        FixedSum size = *this;
-        const bool negative = word[words - 1] >> 63 != 0;
-        if (negative) {
-            std::uint64_t carry = 1;
-            for (int k = 0; k < words; ++k) size.word[k] = 0, size.add(k, ~word[k], carry);
+        int differs = words - 1;
+        while (differs > 0 && sum[0][differs] == sum[1][differs]) --differs;
+        const bool negative = sum[0][differs] < sum[1][differs];
+        std::uint64_t size[words];
+        std::uint64_t borrow = 0;
+        for (int k = 0; k < words; ++k) {
+            const std::uint64_t larger = sum[negative ? 1 : 0][k], smaller = sum[negative ? 0 : 1][k];
+            size[k] = larger - smaller - borrow;
+            borrow = larger < smaller || (larger == smaller && borrow > 0) ? 1 : 0;
         }
         int top = words - 1;
-        while (top > 0 && size.word[top] == 0) --top;
-        if (size.word[top] == 0) return 0;
-        const int free = __builtin_clzll(size.word[top]);
-        std::uint64_t leading = size.word[top] << free, rest = 0;
-        if (top > 0 && free > 0) leading |= size.word[top - 1] >> (64 - free);
-        if (top > 0) rest = size.word[top - 1] << free;
-        for (int k = 0; k < top - 1; ++k) rest |= size.word[k];
+        while (top > 0 && size[top] == 0) --top;
+        if (size[top] == 0) return 0;
+        const int free = __builtin_clzll(size[top]);
+        std::uint64_t leading = size[top] << free, rest = 0;
+        if (top > 0 && free > 0) leading |= size[top - 1] >> (64 - free);
+        if (top > 0) rest = size[top - 1] << free;
+        for (int k = 0; k < top - 1; ++k) rest |= size[k];
         // The last bit is below the rounding of the conversion. It stands for the remaining ones.
         const double all =
             std::ldexp(static_cast<double>(leading | (rest != 0 ? 1 : 0)), 64 * top - free - unit_bits);
@@ -79,15 +78,19 @@ public:
 private:
     static constexpr int unit_bits = 140;
 
-    HILDA_HD void add(int k, std::uint64_t term, std::uint64_t& carry)
+    /// Adds to word k of an integer.
+    HILDA_HD void add(std::uint64_t* word, int k, std::uint64_t term)
     {
-        const std::uint64_t first = word[k] + term, sum = first + carry;
-        carry = (first < term ? 1 : 0) + (sum < first ? 1 : 0);
-        word[k] = sum;
+        word[k] += term;
+        for (bool carry = word[k] < term; carry; carry = ++word[k] == 0)
+            if (++k == words) {
+                ++not_summed;
+                return;
+            }
     }
 
-    std::uint64_t word[words] = {};  ///< the lowest first, in two's complement
-    std::uint64_t not_summed = 0;    ///< number of terms that could not be added
+    std::uint64_t sum[2][words] = {};  ///< of the positive and the negative terms, the lowest word first
+    std::uint64_t not_summed = 0;      ///< number of terms that could not be added, and of overflows
 };
 
 /// The same for the components of vectors

@@ -60,3 +60,34 @@ TEST_CASE("a fixed sum of a number that is not finite or too large is not a numb
         CHECK(std::isnan(sum.value()));
     }
 }
+
+TEST_CASE("a fixed sum reports an overflow, and is exact before it", "[granular][fixed-sum]")
+{
+    for (const double sign : {1., -1.}) {
+        FixedSum sum;
+        for (int k = 0; k < 3; ++k) sum += sign * 0x1p114;
+        CHECK(sum.value() == sign * 3 * 0x1p114);
+        FixedSum twice = sum;
+        twice += sum;
+        CHECK(std::isnan(twice.value()));
+        sum += -sign * 0x1p114;
+        sum += -sign * 0x1p114;
+        CHECK(sum.value() ==
+              sign * 0x1p114);  // the positive and the negative terms have integers of their own
+        sum += sign * 0x1p114;
+        CHECK(std::isnan(sum.value()));
+    }
+}
+
+TEST_CASE("the carry of a fixed sum goes through all words, and differences of large sums are exact",
+          "[granular][fixed-sum]")
+{
+    FixedSum sum;
+    // 2^52 - 2^-140: all bits between are set
+    for (int k = 0; k < 4; ++k) sum += std::ldexp(std::ldexp(1, 48) - 1, 48 * k - 140);
+    CHECK(sum.value() == 0x1p52);  // rounded
+    sum += -0x1p52;
+    CHECK(sum.value() == -0x1p-140);
+    sum += 0x1p-140;
+    CHECK(sum.value() == 0);
+}

@@ -191,15 +191,13 @@ void FirstEngine::scatter(const Domain& domain, bool keeps_list)
         throw io::InvalidInput(io::formatted(
             "mpirun: a run on several processes does not support particles that are larger than the cells of "
             "most others (radius in /particles, /fill and /insert), got radii up to %g m; those up to %g m "
-            "are "
-            "possible",
+            "are possible",
             domain.largest, domain.small));
-    const std::int32_t edge = Partition::edges[std::size(Partition::edges) - 1];
-    if (const double most = BlockGrid(domain.grid, edge).count(); most < all.size())
+    const std::int32_t smallest = Partition::shifts[std::size(Partition::shifts) - 1], edge = 1 << smallest;
+    if (const double most = BlockGrid(domain.grid, smallest).count(); most < all.size())
         throw io::InvalidInput(
             io::formatted("mpirun: the domain (/domain) has %.0f blocks of %d x %d x %d cells, so that there "
-                          "can be at most "
-                          "as many processes, got %d",
+                          "can be at most as many processes, got %d",
                           most, edge, edge, edge, all.size()));
     both({.call = Call::scatter, .domain = domain, .flag = keeps_list ? 1 : 0}, {},
          [&] { own.scatter(&whole, domain, keeps_list); });

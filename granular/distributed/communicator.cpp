@@ -33,22 +33,27 @@ Communicator::Communicator(MPI_Comm communicator) : communicator(communicator)
     int processes_here = 1;
     MPI_Comm_size(here, &processes_here);
     MPI_Comm_free(&here);
-    // A test takes about 0.1 us. Where there are more processes than cores, the one that is awaited may need
-    // this core.
+    // Where there are more processes than cores, the one that is awaited may need this core.
     const bool shares_cores = processes_here > omp_get_num_procs();
-    tests = shares_cores ? 5 : 100;
+    longest_spin = shares_cores ? 0 : 0.002;
     prctl(PR_SET_TIMERSLACK, 1000);  // [ns], of the sleep below; the default is 50 us
 }
 
 void Communicator::wait(MPI_Request* requests, int count) const
 {
+    constexpr int tests = 16;          // between two looks at the clock
     constexpr long longest = 200'000;  // [ns]
     long sleep = 2'000;
-    for (int k = 0;; ++k) {
-        int done = 0;
-        MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE);
-        if (done != 0) return;
-        if (k < tests) continue;
+    double begin = 0;
+    for (;;) {
+        for (int k = 0; k < tests; ++k) {
+            int done = 0;
+            MPI_Testall(count, requests, &done, MPI_STATUSES_IGNORE);
+            if (done != 0) return;
+        }
+        const double now = MPI_Wtime();
+        if (begin == 0) begin = now;
+        if (now - begin < longest_spin) continue;
         const timespec pause{.tv_sec = 0, .tv_nsec = sleep};
         nanosleep(&pause, nullptr);
         sleep = std::min(longest, 2 * sleep);
@@ -64,11 +69,11 @@ void Communicator::broadcast(void* bytes, std::size_t count) const
     });
 }
 
-void Communicator::send_to_first(const void* bytes, std::size_t count) const
+void Communicator::send(int to, const void* bytes, std::size_t count) const
 {
     each_piece(count, [&](std::size_t begin, int piece) {
         MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Isend(static_cast<const char*>(bytes) + begin, piece, MPI_BYTE, 0, 0, communicator, &request);
+        MPI_Isend(static_cast<const char*>(bytes) + begin, piece, MPI_BYTE, to, 0, communicator, &request);
         wait(&request, 1);
     });
 }

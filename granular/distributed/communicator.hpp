@@ -66,25 +66,23 @@ public:
         return sum;
     }
 
-    /// Sends bytes to the first process, which receives those of one process after the other.
-    void send_to_first(const void* bytes, std::size_t count) const;
+    /// Messages from one process to another, which receives them in the order in which they were sent
+    void send(int to, const void* bytes, std::size_t count) const;
     void receive(int from, void* bytes, std::size_t count) const;
     template <class T>
-    void send_to_first(const std::vector<T>& values) const
+    void send(int to, const std::vector<T>& values) const
     {
         const std::uint64_t count = values.size();
-        send_to_first(&count, sizeof count);
-        send_to_first(values.data(), count * sizeof(T));
+        send(to, &count, sizeof count);
+        send(to, values.data(), count * sizeof(T));
     }
-    /// The values of a process in the first one: its own, or those that it has sent by send_to_first()
     template <class T>
-    std::vector<T> received(int from) const
+    void receive(int from, std::vector<T>& values) const
     {
         std::uint64_t count = 0;
         receive(from, &count, sizeof count);
-        std::vector<T> values(count);
+        values.resize(count);
         receive(from, values.data(), count * sizeof(T));
-        return values;
     }
 
     /// Whether the processes are in a call of the first one: an exception there leaves them out of step.
@@ -120,7 +118,7 @@ private:
 
     MPI_Comm communicator;
     int own_rank = 0, processes = 1;
-    int tests = 0;  ///< of a message before a process that waits for it sleeps
+    double longest_spin = 0;  ///< time for which a process waits without sleep [s]
 };
 
 }  // namespace hilda::granular

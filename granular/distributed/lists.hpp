@@ -116,14 +116,22 @@ struct ContactList {
     }
 };
 
-inline ContactHistory contact_of(const Pairs<par::Cpu>& pairs, const std::uint32_t* id, std::uint32_t n)
+/// A contact with the indices of its particles
+inline ContactHistory contact_of(const Pairs<par::Cpu>& pairs, std::uint32_t n)
 {
-    const std::uint32_t j = pairs.j.data()[n];
-    return {.i = id[pairs.i.data()[n]],
-            .j = (j & PairView::boundary_bit) != 0 ? j : id[j],
+    return {.i = pairs.i.data()[n],
+            .j = pairs.j.data()[n],
             .history = pairs.history.data()[n],
             .rotation = value_of(pairs.rotation_history, n),
             .internal = value_of(pairs.internal, n)};
+}
+/// A contact with the ids of its particles
+inline ContactHistory contact_of(const Pairs<par::Cpu>& pairs, const std::uint32_t* id, std::uint32_t n)
+{
+    ContactHistory c = contact_of(pairs, n);
+    c.i = id[c.i];
+    if ((c.j & PairView::boundary_bit) == 0) c.j = id[c.j];
+    return c;
 }
 
 /// Indices of particles by id

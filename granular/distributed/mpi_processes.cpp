@@ -105,8 +105,7 @@ public:
         const Imbalance& i = all.imbalance;
         return io::formatted(
             "%d processes: work of the busiest over the mean, minus 1: %.2g measured, %.2g predicted for the "
-            "last "
-            "of %ld divisions of the domain",
+            "last of %ld divisions of the domain",
             all.size(), i.measured, i.predicted, i.divisions);
     }
     void abort(int code) override

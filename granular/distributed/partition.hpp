@@ -16,18 +16,23 @@ namespace hilda::granular {
 
 /// Cubes of cells; the last ones along an axis may have fewer cells.
 struct BlockGrid {
-    std::int32_t edge = 1;               ///< cells along an edge of a block
+    std::int32_t shift = 0;              ///< a block has 2^shift cells along an edge
     std::int32_t blocks[3] = {1, 1, 1};  ///< number of blocks along each axis
 
     BlockGrid() = default;
-    BlockGrid(const CellGrid& grid, std::int32_t edge) : edge(edge)
+    BlockGrid(const CellGrid& grid, std::int32_t shift) : shift(shift)
     {
-        for (int k = 0; k < 3; ++k) blocks[k] = (grid.cells[k] + edge - 1) / edge;
+        for (int k = 0; k < 3; ++k) blocks[k] = ((grid.cells[k] - 1) >> shift) + 1;
+    }
+    /// Number of the block with these numbers along the axes
+    std::uint32_t number(std::int32_t x, std::int32_t y, std::int32_t z) const
+    {
+        return static_cast<std::uint32_t>((z * blocks[1] + y) * blocks[0] + x);
     }
     /// Number of the block of a cell
     std::uint32_t block_of(std::int32_t x, std::int32_t y, std::int32_t z) const
     {
-        return static_cast<std::uint32_t>((z / edge * blocks[1] + y / edge) * blocks[0] + x / edge);
+        return number(x >> shift, y >> shift, z >> shift);
     }
     double count() const { return double(blocks[0]) * blocks[1] * blocks[2]; }
 };
@@ -40,7 +45,7 @@ struct BlockWork {
 
 class Partition {
 public:
-    static constexpr std::int32_t edges[] = {8, 4, 2};  ///< of blocks [cells]
+    static constexpr std::int32_t shifts[] = {3, 2, 1};  ///< see BlockGrid
 
     explicit Partition(const Communicator& all);
     ~Partition();

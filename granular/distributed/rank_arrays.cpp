@@ -10,13 +10,88 @@ namespace hilda::granular {
 
 using namespace detail;
 
+namespace {
+
+/// The particles and contacts of a process
+struct Portion {
+    std::vector<ParticleRecord> particles;
+    std::vector<std::uint32_t> partners;  ///< ids of the particles of other processes in the contacts
+    /// i and j: places in `particles`, then in `partners`; j of a surface has PairView::boundary_bit
+    std::vector<ContactHistory> contacts;
+};
+
+/// Numbers in the order of their processes; those of a process p are start[p] to start[p + 1] - 1.
+struct Listed {
+    std::vector<std::uint32_t> number, start;
+
+    /// each(f) calls f(process, number), twice with the same calls.
+    template <class Each>
+    Listed(int processes, const Each& each) : start(static_cast<std::size_t>(processes) + 2)
+    {
+        each([&](int process, std::uint32_t) { ++start[static_cast<std::size_t>(process) + 2]; });
+        for (std::size_t k = 2; k < start.size(); ++k) start[k] += start[k - 1];
+        number.resize(start.back());
+        each([&](int process, std::uint32_t n) {
+            number[start[static_cast<std::size_t>(process) + 1]++] = n;
+        });
+    }
+};
+
+/// Calls f(process, portion) for all processes from the last to the first.
+template <class F>
+void each_portion(const Arrays<par::Cpu>& whole, int processes, const std::vector<int>& owner, const F& f)
+{
+    const Particles<par::Cpu>& p = whole.particle;
+    const Pairs<par::Cpu>& pairs = whole.pairs;
+    const Listed particles(processes, [&](const auto& add) {
+        for (std::uint32_t k = 0; k < p.count; ++k) add(owner[k], k);
+    });
+    const Listed contacts(processes, [&](const auto& add) {
+        for (std::uint32_t n = 0; n < pairs.count; ++n) {
+            if (pairs.in_contact.data()[n] == 0) continue;
+            const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
+            add(owner[i], n);
+            if ((j & PairView::boundary_bit) == 0 && owner[j] != owner[i]) add(owner[j], n);
+        }
+    });
+    std::vector<std::uint32_t> place(p.count, none), partners;
+    Portion portion;
+    for (int process = processes - 1; process >= 0; --process) {
+        const auto of = static_cast<std::size_t>(process);
+        portion.particles.clear(), portion.partners.clear(), portion.contacts.clear(), partners.clear();
+        for (std::uint32_t m = particles.start[of]; m < particles.start[of + 1]; ++m) {
+            place[particles.number[m]] = m - particles.start[of];
+            portion.particles.push_back(record_of(p, particles.number[m]));
+        }
+        const auto place_of = [&](std::uint32_t k) {
+            if (place[k] == none) {
+                place[k] = static_cast<std::uint32_t>(portion.particles.size() + partners.size());
+                partners.push_back(k), portion.partners.push_back(p.id.data()[k]);
+            }
+            return place[k];
+        };
+        for (std::uint32_t m = contacts.start[of]; m < contacts.start[of + 1]; ++m) {
+            ContactHistory c = contact_of(pairs, contacts.number[m]);
+            c.i = place_of(c.i);
+            if ((c.j & PairView::boundary_bit) == 0) c.j = place_of(c.j);
+            portion.contacts.push_back(c);
+        }
+        for (const std::uint32_t k : partners) place[k] = none;
+        for (std::uint32_t m = particles.start[of]; m < particles.start[of + 1]; ++m)
+            place[particles.number[m]] = none;
+        f(process, portion);
+    }
+}
+
+}  // namespace
+
 void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool keeps_list)
 {
     const CellGrid& g = domain.grid;
-    struct Sizes {
-        std::uint32_t edge, particles;
+    struct Start {
+        std::int32_t shift;
         UsedArrays used;
-    } sizes{};
+    } begin{};
     std::vector<BlockWork> loaded;
     const auto cell = [&](std::uint32_t k) {
         const Particles<par::Cpu>& p = whole->particle;
@@ -28,11 +103,10 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
             p.position_at_build.resize(p.count);
             std::copy_n(p.position.data(), p.count, p.position_at_build.data());
         }
-        sizes.particles = p.count;
-        sizes.used = {p.acc.size() > 0, p.orientation.size() > 0};
-        for (const std::int32_t edge : Partition::edges) {
-            const BlockGrid blocks(g, edge);
-            sizes.edge = static_cast<std::uint32_t>(edge);
+        begin.used = {p.acc.size() > 0, p.orientation.size() > 0};
+        for (const std::int32_t shift : Partition::shifts) {
+            const BlockGrid blocks(g, shift);
+            begin.shift = shift;
             std::vector<float> weight(static_cast<std::size_t>(blocks.count()));
             for (std::uint32_t k = 0; k < p.count; ++k)
                 ++weight[blocks.block_of(g.x_of(cell(k)), g.y_of(cell(k)), g.z_of(cell(k)))];
@@ -43,65 +117,44 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
             if (loaded.size() >= each * static_cast<std::size_t>(all.size())) break;
         }
     }
-    all.broadcast(&sizes, sizeof sizes);
-    used = sizes.used;
-    partition.make(BlockGrid(g, static_cast<std::int32_t>(sizes.edge)), loaded);
+    all.broadcast(&begin, sizeof begin);
+    used = begin.used;
+    partition.make(BlockGrid(g, begin.shift), loaded);
     surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
 
-    Addressed<ParticleRecord> particles;
-    Addressed<ContactHistory> contacts;
+    const auto take = [&](const Portion& mine) {
+        const auto particles = static_cast<std::uint32_t>(mine.particles.size()),
+                   count = particles + static_cast<std::uint32_t>(mine.partners.size());
+        resize(own.particle, count, used);
+        own.particle.ghost.resize(count);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            // The partners of other processes are placeholders until rebuild() finds them as ghosts.
+            ParticleRecord partner;
+            if (k >= particles) partner.id = mine.partners[k - particles];
+            set_record(own.particle, k, k < particles ? mine.particles[k] : partner);
+            own.particle.ghost.data()[k] = k < particles ? 0 : 1;
+        }
+        ContactList list;
+        for (const ContactHistory& c : mine.contacts) list.add(c.i, c.j, c);
+        list.put(own.pairs, rotation_laws, internal);
+    };
     if (whole != nullptr) {
-        const Particles<par::Cpu>& p = whole->particle;
-        const Pairs<par::Cpu>& pairs = whole->pairs;
-        std::vector<int> owner(p.count);
-        particles.reserve(p.count);
-        for (std::uint32_t k = 0; k < p.count; ++k) {
-            owner[k] = owner_of(g, cell(k));
-            particles.emplace_back(owner[k], record_of(p, k));
-        }
-        for (std::uint32_t n = 0; n < pairs.count; ++n) {
-            if (pairs.in_contact.data()[n] == 0) continue;
-            const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
-            const ContactHistory c = contact_of(pairs, p.id.data(), n);
-            contacts.emplace_back(owner[i], c);
-            if ((j & PairView::boundary_bit) == 0 && owner[j] != owner[i]) contacts.emplace_back(owner[j], c);
-        }
+        owner.resize(whole->particle.count);
+        for (std::uint32_t k = 0; k < owner.size(); ++k) owner[k] = owner_of(g, cell(k));
+        each_portion(*whole, all.size(), owner, [&](int process, const Portion& portion) {
+            if (process == all.rank()) return take(portion);
+            all.send(process, portion.particles), all.send(process, portion.partners);
+            all.send(process, portion.contacts);
+        });
+    } else {
+        Portion mine;
+        all.receive(0, mine.particles), all.receive(0, mine.partners), all.receive(0, mine.contacts);
+        take(mine);
     }
-    const std::vector<ParticleRecord> mine = exchanged(all, particles);
-    const std::vector<ContactHistory> with_mine = exchanged(all, contacts);
-
-    // All particles of the contacts; the partners of other processes are placeholders until rebuild() finds
-    // them as ghosts.
-    Index index;
-    for (std::uint32_t k = 0; k < mine.size(); ++k) index.add(mine[k].id, k);
-    index.sort();
-    std::vector<std::uint32_t> partners;
-    for (const ContactHistory& c : with_mine)
-        for (const std::uint32_t id : {c.i, c.j})
-            if ((id & PairView::boundary_bit) == 0 && !index.find(id)) partners.push_back(id);
-    std::sort(partners.begin(), partners.end());
-    partners.erase(std::unique(partners.begin(), partners.end()), partners.end());
-    const auto count = static_cast<std::uint32_t>(mine.size() + partners.size());
-    resize(own.particle, count, used);
-    own.particle.ghost.resize(count);
-    for (std::uint32_t k = 0; k < mine.size(); ++k)
-        set_record(own.particle, k, mine[k]), own.particle.ghost.data()[k] = 0;
-    for (std::uint32_t k = 0; k < partners.size(); ++k) {
-        const auto at = static_cast<std::uint32_t>(mine.size()) + k;
-        ParticleRecord placeholder;
-        placeholder.id = partners[k];
-        set_record(own.particle, at, placeholder), own.particle.ghost.data()[at] = 1;
-        index.add(partners[k], at);
-    }
-    index.sort();
-    ContactList list;
-    for (const ContactHistory& c : with_mine)
-        list.add(*index.find(c.i), (c.j & PairView::boundary_bit) != 0 ? c.j : *index.find(c.j), c);
-    list.put(own.pairs, rotation_laws, internal);
     own.pairs.start.resize(0);
     grid = g;
     ghost_plan.reset();
-    busy = work = 0, steps = 0;
+    busy = work = 0, steps = 0, is_measured = false;
 }
 
 namespace {
@@ -113,7 +166,38 @@ struct Rows {
     std::vector<std::uint32_t> j;  ///< id, or surface with PairView::boundary_bit
     std::vector<std::uint8_t> law, in_contact;
     std::vector<Float4> history, rotation, internal;
+
+    /// Calls f for each list.
+    template <class F>
+    void each(const F& f)
+    {
+        f(particles), f(lengths), f(j), f(law), f(in_contact), f(history), f(rotation), f(internal);
+    }
 };
+
+/// The place of a particle in the order of a single process: that of the cells of the last search, then of
+/// the ids
+struct Place {
+    std::uint64_t key = 0;
+    std::uint32_t id = 0, length = 0;       ///< length of its row
+    std::uint32_t process = 0, number = 0;  ///< number in the Rows of its process
+    bool operator<(const Place& o) const { return std::pair(key, id) < std::pair(o.key, o.id); }
+};
+
+/// Sorts runs that are in order: from ends[k] to ends[k + 1] - 1.
+void merge(std::vector<Place>& places, std::vector<std::size_t> ends)
+{
+    const auto at = [&](std::size_t n) { return places.begin() + static_cast<std::ptrdiff_t>(n); };
+    while (ends.size() > 2) {
+        std::vector<std::size_t> merged = {0};
+        for (std::size_t k = 2; k < ends.size(); k += 2) {
+            std::inplace_merge(at(ends[k - 2]), at(ends[k - 1]), at(ends[k]));
+            merged.push_back(ends[k]);
+        }
+        if (ends.size() % 2 == 0) merged.push_back(ends.back());
+        ends = std::move(merged);
+    }
+}
 
 /// Sorts contacts by their particles i.
 void sort_by_i(Pairs<par::Cpu>& pairs)
@@ -163,73 +247,72 @@ void RankEngine::gather(Arrays<par::Cpu>* whole)
         append(rows.history, q.history, true), append(rows.rotation, q.rotation_history, rotation_laws);
         append(rows.internal, q.internal, internal);
     }
+    std::vector<Place> places;
+    places.reserve(rows.particles.size());
+    for (std::uint32_t k = 0; k < rows.particles.size(); ++k) {
+        const ParticleRecord& r = rows.particles[k];
+        places.push_back({.key = key_of(grid, r.position_at_build.cell, r.species.replica),
+                          .id = r.id,
+                          .length = rows.lengths[k],
+                          .process = static_cast<std::uint32_t>(all.rank()),
+                          .number = k});
+    }
     if (!all.is_first()) {
-        all.send_to_first(rows.particles), all.send_to_first(rows.lengths), all.send_to_first(rows.j);
-        all.send_to_first(rows.law), all.send_to_first(rows.in_contact), all.send_to_first(rows.history);
-        all.send_to_first(rows.rotation), all.send_to_first(rows.internal);
+        all.send(0, places);
+        rows.each([&](const auto& list) { all.send(0, list); });
         return;
     }
 
-    std::vector<Rows> of(static_cast<std::size_t>(all.size()));
-    of[0] = std::move(rows);
+    std::vector<std::size_t> ends = {0, places.size()};
     for (int from = 1; from < all.size(); ++from) {
-        Rows& r = of[static_cast<std::size_t>(from)];
-        r.particles = all.received<ParticleRecord>(from), r.lengths = all.received<std::uint32_t>(from);
-        r.j = all.received<std::uint32_t>(from), r.law = all.received<std::uint8_t>(from);
-        r.in_contact = all.received<std::uint8_t>(from), r.history = all.received<Float4>(from);
-        r.rotation = all.received<Float4>(from), r.internal = all.received<Float4>(from);
+        std::vector<Place> of;
+        all.receive(from, of);
+        places.insert(places.end(), of.begin(), of.end());
+        ends.push_back(places.size());
     }
-    // The order of a single process: that of the cells of the last search, then of the ids
-    struct Place {
-        std::uint64_t key;
-        std::uint32_t id, process, number, begin;  ///< begin: first pair of its row in the lists
-        bool operator<(const Place& o) const { return std::pair(key, id) < std::pair(o.key, o.id); }
-    };
-    std::vector<Place> places;
-    std::uint32_t largest_id = 0;
-    std::size_t pairs = 0;
-    for (std::uint32_t from = 0; from < of.size(); ++from) {
-        const auto begin = static_cast<std::ptrdiff_t>(places.size());
-        std::uint32_t first_pair = 0;
-        for (std::uint32_t k = 0; k < of[from].particles.size(); ++k) {
-            const ParticleRecord& r = of[from].particles[k];
-            places.push_back(
-                {key_of(grid, r.position_at_build.cell, r.species.replica), r.id, from, k, first_pair});
-            first_pair += of[from].lengths[k];
-            largest_id = std::max(largest_id, r.id);
-        }
-        pairs += first_pair;
-        std::inplace_merge(places.begin(), places.begin() + begin, places.end());
-    }
-    std::vector<std::uint32_t> index(places.empty() ? 0 : std::size_t{largest_id} + 1, none);
+    const std::vector<std::size_t> first = ends;  // particle of each process
+    merge(places, std::move(ends));
+
     Particles<par::Cpu>& p = whole->particle;
     Pairs<par::Cpu>& to = whole->pairs;
     const auto n = static_cast<std::uint32_t>(places.size());
+    std::uint32_t largest_id = 0, pairs = 0;
+    std::vector<std::uint32_t> place_of(n);  // by process and number
+    to.start.resize(n + std::size_t{1});
+    for (std::uint32_t k = 0; k < n; ++k) {
+        const Place& of = places[k];
+        place_of[first[of.process] + of.number] = k;
+        to.start.data()[k] = pairs;
+        pairs += of.length, largest_id = std::max(largest_id, of.id);
+    }
+    to.start.data()[n] = pairs;
+    std::vector<std::uint32_t> index(n == 0 ? 0 : std::size_t{largest_id} + 1, none);
+    for (std::uint32_t k = 0; k < n; ++k) index[places[k].id] = k;
     resize(p, n, used);
-    to.count = static_cast<std::uint32_t>(pairs);
-    to.start.resize(n + std::size_t{1}), to.i.resize(pairs), to.j.resize(pairs);
+    to.count = pairs;
+    to.i.resize(pairs), to.j.resize(pairs);
     to.law.resize(one_law ? 0 : pairs), to.in_contact.resize(pairs), to.history.resize(pairs);
     to.rotation_history.resize(rotation_laws ? pairs : 0), to.internal.resize(internal ? pairs : 0);
-    for (std::uint32_t k = 0; k < n; ++k) {
-        index[places[k].id] = k;
-        set_record(p, k, of[places[k].process].particles[places[k].number]);
-    }
-    std::uint32_t pair = 0;
-    for (std::uint32_t k = 0; k < n; ++k) {
-        const Rows& r = of[places[k].process];
-        to.start.data()[k] = pair;
-        const std::uint32_t begin = places[k].begin, end = begin + r.lengths[places[k].number];
-        for (std::uint32_t from = begin; from < end; ++from, ++pair) {
-            const std::uint32_t j = r.j[from];
-            to.i.data()[pair] = k;
-            to.j.data()[pair] = (j & PairView::boundary_bit) != 0 ? j : index[j];
-            if (!one_law) to.law.data()[pair] = from < r.law.size() ? r.law[from] : std::uint8_t{0};
-            to.in_contact.data()[pair] = r.in_contact[from], to.history.data()[pair] = r.history[from];
-            if (rotation_laws) to.rotation_history.data()[pair] = r.rotation[from];
-            if (internal) to.internal.data()[pair] = r.internal[from];
+    for (int from = 0; from < all.size(); ++from) {
+        if (from > 0) rows.each([&](auto& list) { all.receive(from, list); });
+        std::uint32_t begin = 0;
+        for (std::uint32_t number = 0; number < rows.particles.size(); ++number) {
+            const std::uint32_t k = place_of[first[static_cast<std::size_t>(from)] + number],
+                                end = begin + rows.lengths[number];
+            set_record(p, k, rows.particles[number]);
+            for (std::uint32_t pair = to.start.data()[k]; begin < end; ++begin, ++pair) {
+                const std::uint32_t j = rows.j[begin];
+                to.i.data()[pair] = k;
+                to.j.data()[pair] = (j & PairView::boundary_bit) != 0 ? j : index[j];
+                if (!one_law)
+                    to.law.data()[pair] = begin < rows.law.size() ? rows.law[begin] : std::uint8_t{0};
+                to.in_contact.data()[pair] = rows.in_contact[begin];
+                to.history.data()[pair] = rows.history[begin];
+                if (rotation_laws) to.rotation_history.data()[pair] = rows.rotation[begin];
+                if (internal) to.internal.data()[pair] = rows.internal[begin];
+            }
         }
     }
-    to.start.data()[n] = pair;
 }
 
 }  // namespace hilda::granular

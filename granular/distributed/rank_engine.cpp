@@ -119,13 +119,14 @@ void RankEngine::assign_cells(const Domain& domain)
 /// per work.
 void RankEngine::divide_again(const Domain& domain)
 {
-    constexpr long least_steps = 200;
+    // The first division has weights without a measurement. CPU times of short periods fluctuate.
+    constexpr long first_steps = 200, later_steps = 1000;
     constexpr double most = 0.05;
-    if (steps < least_steps || own.pairs.start.size() == 0) return;
+    if (steps < (is_measured ? later_steps : first_steps) || own.pairs.start.size() == 0) return;
     all.imbalance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
     const double rate = work > 0 ? busy / work : 0;
     const double imbalance = all.imbalance.measured;
-    busy = work = 0, steps = 0;
+    busy = work = 0, steps = 0, is_measured = true;
     if (imbalance <= most) return;
 
     const CellGrid& g = domain.grid;
@@ -194,61 +195,71 @@ void RankEngine::restore_list(const Domain& domain)
     send_ghosts();
 }
 
-/// Whether all blocks around this one and itself belong to this process
-bool RankEngine::is_surrounded(const CellGrid& grid, std::uint32_t block) const
+namespace {
+
+/// Different values out of three, in the order of their first occurrence
+struct Few {
+    std::int32_t value[3];
+    int count = 0;
+
+    void add(std::int32_t x)
+    {
+        for (int k = 0; k < count; ++k)
+            if (value[k] == x) return;
+        value[count++] = x;
+    }
+};
+
+}  // namespace
+
+/// Lists the other processes that have blocks around a cell, or around the block of a cell.
+void RankEngine::find_others_around(const CellGrid& g, std::uint32_t cell, bool of_block,
+                                    std::vector<int>& others) const
 {
-    signed char& known = surrounded[block];
-    if (known >= 0) return known != 0;
     const BlockGrid& b = partition.grid();
-    const auto at = [&](int axis) {
-        return static_cast<std::int32_t>(axis == 0   ? block % b.blocks[0]
-                                         : axis == 1 ? block / b.blocks[0] % b.blocks[1]
-                                                     : block / b.blocks[0] / b.blocks[1]);
-    };
-    bool all_own = true;
-    for (int c = -1; c <= 1; ++c)
-        for (int d = -1; d <= 1; ++d)
-            for (int e = -1; e <= 1; ++e) {
-                std::int32_t i[] = {at(0) + e, at(1) + d, at(2) + c};
-                bool exists = true;
-                for (int k = 0; k < 3; ++k) {
-                    if (grid.periodic[k] != 0) i[k] = (i[k] + b.blocks[k]) % b.blocks[k];
-                    exists = exists && i[k] >= 0 && i[k] < b.blocks[k];
-                }
-                if (exists)
-                    all_own = all_own && partition.owner(static_cast<std::uint32_t>(
-                                             (i[2] * b.blocks[1] + i[1]) * b.blocks[0] + i[0])) == all.rank();
+    const std::int32_t at[] = {g.x_of(cell), g.y_of(cell), g.z_of(cell)};
+    Few along[3];
+    for (int a = 0; a < 3; ++a) {
+        along[a].add(at[a] >> b.shift);
+        for (const int side : {-1, 1}) {
+            const std::int32_t end = of_block ? b.blocks[a] : g.cells[a];
+            std::int32_t next = (of_block ? at[a] >> b.shift : at[a]) + side;
+            if (g.periodic[a] != 0) next = next < 0 ? end - 1 : next >= end ? 0 : next;
+            if (next >= 0 && next < end) along[a].add(of_block ? next : next >> b.shift);
+        }
+    }
+    others.clear();
+    for (int k = 0; k < along[2].count; ++k)
+        for (int j = 0; j < along[1].count; ++j)
+            for (int i = 0; i < along[0].count; ++i) {
+                const int owner =
+                    partition.owner(b.number(along[0].value[i], along[1].value[j], along[2].value[k]));
+                if (owner != all.rank() && std::find(others.begin(), others.end(), owner) == others.end())
+                    others.push_back(owner);
             }
-    known = all_own ? 1 : 0;
-    return all_own;
 }
 
 /// The particles in the cells next to those of other processes, which they need as ghosts
-RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g, const std::vector<Position>& particles) const
+RankEngine::Ghosts RankEngine::find_ghosts(const CellGrid& g, const std::vector<std::uint32_t>& cells) const
 {
     std::vector<std::pair<int, std::uint32_t>> to;
-    std::vector<int> processes;
-    for (std::uint32_t k = 0; k < particles.size(); ++k) {
-        const std::uint32_t cell = particles[k].cell;
-        const std::int32_t at[] = {g.x_of(cell), g.y_of(cell), g.z_of(cell)};
-        if (is_surrounded(g, partition.grid().block_of(at[0], at[1], at[2]))) continue;
-        processes.clear();
-        for (int c = -1; c <= 1; ++c)
-            for (int d = -1; d <= 1; ++d)
-                for (int e = -1; e <= 1; ++e) {
-                    std::int32_t i[] = {at[0] + e, at[1] + d, at[2] + c};
-                    bool exists = true;
-                    for (int a = 0; a < 3; ++a) {
-                        if (g.periodic[a] != 0) i[a] = (i[a] + g.cells[a]) % g.cells[a];
-                        exists = exists && i[a] >= 0 && i[a] < g.cells[a];
-                    }
-                    if (!exists) continue;
-                    const int owner = partition.owner(partition.grid().block_of(i[0], i[1], i[2]));
-                    if (owner != all.rank() &&
-                        std::find(processes.begin(), processes.end(), owner) == processes.end())
-                        processes.push_back(owner);
-                }
-        for (const int process : processes) to.emplace_back(process, k);
+    std::vector<int> others;
+    for (std::uint32_t k = 0; k < cells.size(); ++k) {
+        // Particles of a cell mostly follow each other.
+        if (k == 0 || cells[k] != cells[k - 1]) {
+            const std::uint32_t cell = cells[k];
+            signed char& known =
+                surrounded[partition.grid().block_of(g.x_of(cell), g.y_of(cell), g.z_of(cell))];
+            if (known < 0) {
+                find_others_around(g, cell, true, others);
+                known = others.empty() ? 1 : 0;
+            }
+            if (known != 0)
+                others.clear();
+            else
+                find_others_around(g, cell, false, others);
+        }
+        for (const int process : others) to.emplace_back(process, k);
     }
     std::sort(to.begin(), to.end());
     Ghosts ghosts;
@@ -264,10 +275,8 @@ void RankEngine::rebuild(const Domain& domain)
     const CellGrid& g = grid = domain.grid;
     const std::uint32_t before = p.count, *const id = p.id.data();
     // The particles that stay, and the place of each particle among them
-    std::vector<std::uint32_t> stay, place(before, none);
-    std::vector<int> owner(before, all.rank());
+    stay.clear(), place.assign(before, none), owner.assign(before, all.rank());
     Addressed<ParticleRecord> leaving;
-    stay.reserve(before);
     for (std::uint32_t k = 0; k < before; ++k) {
         if (is_ghost(k)) continue;
         owner[k] = owner_of(g, p.position.data()[k].cell);
@@ -291,11 +300,10 @@ void RankEngine::rebuild(const Domain& domain)
     const auto staying = static_cast<std::uint32_t>(stay.size()),
                first_ghost = staying + static_cast<std::uint32_t>(added.size());
 
-    std::vector<Position> places;
-    places.reserve(first_ghost);
-    for (const std::uint32_t k : stay) places.push_back(p.position.data()[k]);
-    for (const ParticleRecord& r : added) places.push_back(r.position);
-    Ghosts ghosts = find_ghosts(g, places);
+    cells.clear();
+    for (const std::uint32_t k : stay) cells.push_back(p.position.data()[k].cell);
+    for (const ParticleRecord& r : added) cells.push_back(r.position.cell);
+    Ghosts ghosts = find_ghosts(g, cells);
     std::vector<GhostRecord> records;
     records.reserve(ghosts.which.size());
     for (const std::uint32_t k : ghosts.which) {
@@ -331,13 +339,18 @@ void RankEngine::rebuild(const Domain& domain)
         move_to(pairs.history, n), move_to(pairs.rotation_history, n), move_to(pairs.internal, n);
         ++contacts;
     }
-    Index all_ids;
-    for (std::uint32_t k = 0; !arrived.empty() && k < staying; ++k) all_ids.add(id[stay[k]], k);
-    all_ids.sort();
+    // The particles of the arrived contacts that were here before
+    std::vector<std::uint32_t> wanted;
+    for (const ContactHistory& c : arrived) wanted.push_back(c.i), wanted.push_back(c.j);
+    std::sort(wanted.begin(), wanted.end());
+    Index known_before;
+    for (std::uint32_t k = 0; !wanted.empty() && k < staying; ++k)
+        if (std::binary_search(wanted.begin(), wanted.end(), id[stay[k]])) known_before.add(id[stay[k]], k);
+    known_before.sort();
     const auto place_of = [&](std::uint32_t of) {
         if ((of & PairView::boundary_bit) != 0) return of;
         const auto at = others.find(of);
-        return at ? *at : all_ids.find(of).value_or(none);
+        return at ? *at : known_before.find(of).value_or(none);
     };
     ContactList list;
     for (const ContactHistory& c : arrived)

@@ -61,8 +61,9 @@ private:
     void divide_again(const Domain& domain);
     void rebuild(const Domain& domain);
     struct Ghosts;
-    Ghosts find_ghosts(const CellGrid& grid, const std::vector<Position>& particles) const;
-    bool is_surrounded(const CellGrid& grid, std::uint32_t block) const;
+    Ghosts find_ghosts(const CellGrid& grid, const std::vector<std::uint32_t>& cells) const;
+    void find_others_around(const CellGrid& grid, std::uint32_t cell, bool of_block,
+                            std::vector<int>& others) const;
     void send_ghosts();
     double work_of(std::uint32_t k) const;
 
@@ -75,12 +76,17 @@ private:
     std::vector<std::uint32_t> received;  ///< indices of the ghosts, in the order of the messages
     std::vector<GhostState> to_send, to_receive;
     std::vector<MPI_Request> requests;
-    mutable std::vector<signed char> surrounded;  ///< by block, see is_surrounded(); -1: not known
+    /// By block: whether all blocks around it and itself belong to this process; -1: not known
+    mutable std::vector<signed char> surrounded;
+    // of rebuild(), kept for their memory
+    std::vector<std::uint32_t> stay, place, cells;
+    std::vector<int> owner;
     par::Array<par::Cpu, std::uint32_t> keys, order;
 
     float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
     double busy = 0, work = 0;  ///< CPU time of the steps since the last division [s], and their work
     long steps = 0;             ///< since then
+    bool is_measured = false;   ///< whether they have been compared with those of the other processes
 };
 
 }  // namespace hilda::granular

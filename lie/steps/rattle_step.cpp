@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/steps/rattle_step.hpp"
+
+#include "lie/check.hpp"
+#include "lie/steps/projection.hpp"
+#include "lie/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+namespace hilda::lie {
+
+RattleStep::RattleStep(const System& model, const Settings& settings, std::string name)
+    : NodeStep(model, settings), name(std::move(name)), next(bodies),
+      varies(!model.load_pattern().block.empty())
+{}
+
+Statistics RattleStep::statistics() const
+{
+    Statistics s = NodeStep::statistics();
+    s.refactorizations -= repeated;
+    return s;
+}
+
+int RattleStep::advance(State& x, double h, double t_end)
+{
+    x_n = x;
+    assemble_at_start();
+    set_known_part(h);
+    predict(h, 0.5 * h * h, 0.5 * h * h);  // constant accelerations, and the multipliers of t_n
+    x.t = t_end;
+    for (int k = 1; k <= settings.max_iterations; ++k) {
+        place(x);
+        set_linear_residual(K.rows());
+        balance_momentum();
+        set_constraint_residual(1, x, 1);
+        K.solve(e);
+        z += e;
+        if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
+            place(x);
+            for (Motion& body : x.body) body.A = orthonormalised(body.A);
+            set_velocities(x, h);
+            set_accelerations(x);
+            return k;
+        }
+    }
+    no_convergence(name, correction, x);
+}
+
+/// Assembles K(t_n). The step before has assembled it already, except before the first step of a run, where
+/// its time differs by rounding, and for contacts, whose tangent vectors have changed when the node was
+/// accepted. Not counted, so that a resumed run has the counts of an uninterrupted one.
+void RattleStep::assemble_at_start()
+{
+    const long before = NodeStep::statistics().refactorizations;
+    if (model.pattern().algebraic_variables() > 0)
+        K.assemble(x_n);
+    else
+        assemble_once(x_n);
+    repeated += NodeStep::statistics().refactorizations - before;
+}
+
+/// h M ṙ_n + ½h² F_n and h J̄ ω̄_n + ½h² n̄_n
+void RattleStep::set_known_part(double h)
+{
+    model.loads(x_n, loads);
+    for (int i = 0; i < bodies; ++i) {
+        const Motion& body = x_n.body[i];
+        b.segment<3>(6 * i) = h * mass.m[i] * body.rdot + 0.5 * h * h * loads.F[i];
+        b.segment<3>(6 * i + 3) = h * (mass.J_bar[i] * body.omega_bar) + 0.5 * h * h * loads.n_bar[i];
+    }
+    K.constraint_part(b).setZero();
+    K.algebraic_part(b).setZero();
+}
+
+/// The pose x at t_{n+1} from z
+void RattleStep::place(State& x)
+{
+    place_increments(x);
+    place_algebraic(x, 1);
+}
+
+/// The second half step: ṙ, ω̄ at t_{n+1}
+void RattleStep::set_velocities(State& x, double h)
+{
+    for (int i = 0; i < bodies; ++i) {
+        x.body[i].rdot = 2 / h * z.segment<3>(6 * i) - x_n.body[i].rdot;
+        x.body[i].omega_bar = 2 / h * z.segment<3>(6 * i + 3) - x_n.body[i].omega_bar;
+    }
+    model.loads(x, loads);
+    assemble_once(x);
+    change = 0;
+    const bool has_history = !x.internal_state.empty() && model.internal_states_are_history();
+    constexpr int most = 50;
+    double least = std::numeric_limits<double>::infinity();  // change
+    for (int k = 1; k <= most && !(change > 10 * least); ++k) {
+        for (int i = 0; i < bodies; ++i) {
+            e.segment<3>(6 * i) = mass.m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
+            e.segment<3>(6 * i + 3) = -momentum(i, -z.segment<3>(6 * i + 3)) / h + 0.5 * h * loads.n_bar[i];
+        }
+        solve_velocities(model, K, x, e);
+        if (!varies || has_history || settle_loads(x, h)) return;
+        least = std::min(least, change);
+    }
+    std::ostringstream what;
+    what.precision(2);
+    what << name << ": the iteration for loads that depend on velocities does not converge (last change "
+         << change << " m/s or rad/s): the damping is too strong for the step; reduce the step";
+    throw NumericalFailure("newton_diverged", what.str());
+}
+
+/// Replaces `loads` by those of the velocities of x. Returns whether they are the same, apart from a change
+/// of the velocities that is below the tolerance of Newton's method.
+bool RattleStep::settle_loads(const State& x, double h)
+{
+    model.loads(x, next);
+    change = 0;
+    double size = 0;
+    for (int i = 0; i < bodies; ++i) {
+        const Vec3 by_force = 0.5 * h / mass.m[i] * (next.F[i] - loads.F[i]),
+                   by_torque = 0.5 * h * (J_bar_inverse[i] * (next.n_bar[i] - loads.n_bar[i]));
+        change = std::max({change, by_force.norm(), by_torque.norm()});
+        size = std::max({size, x.body[i].rdot.norm(), x.body[i].omega_bar.norm()});
+    }
+    std::swap(loads, next);
+    constexpr double share = 1e-4;  // of the tolerance; the next iteration would reduce the change further
+    return !(std::abs(h) * change > share * settings.tolerance) ||
+           change < 4 * std::numeric_limits<double>::epsilon() * size;
+}
+
+}  // namespace hilda::lie

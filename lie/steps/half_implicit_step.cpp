@@ -18,7 +18,7 @@ HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings
                                    double q, ImplicitSprings implicit_springs)
     : SaddleStep(model, settings, implicit_springs.rows()), name(std::move(name)), w(w), q(q),
       springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), Phi(model.rows()),
-      lambda(K.rows().rows())
+      lambda(K.rows().rows()), anderson(K.size(), 6 * bodies)
 {}
 
 int HalfImplicitStep::step(State& x, double h)
@@ -111,8 +111,13 @@ int HalfImplicitStep::newton(State& x)
     for (int k = 1; k <= settings.max_iterations; ++k) {
         place(x);
         place_algebraic(x, 1 / q);
-        if (k > patience) refresh(x);
+        if (k == patience + 1) refresh(x), anderson.start();
         correct(refreshed ? 1 : k, x);
+        if (k > patience) {
+            z_before = z - e;
+            anderson.accelerate(z_before, e);
+            z = z_before + e;
+        }
         if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w)) return k;
     }
     no_convergence(name, correction, x);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "lie/bounded_rows.hpp"
+#include "lie/steps/anderson.hpp"
 #include "lie/steps/implicit_springs.hpp"
 #include "lie/steps/saddle_step.hpp"
 
@@ -82,6 +83,7 @@ private:
     Rows C_n;
     BoundedRows friction;
     Eigen::VectorXd z_start, z_before, Phi, lambda;
+    Anderson anderson;
 };
 
 }  // namespace hilda::lie

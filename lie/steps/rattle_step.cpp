@@ -14,7 +14,7 @@
 namespace hilda::lie {
 
 RattleStep::RattleStep(const System& model, const Settings& settings, std::string name)
-    : NodeStep(model, settings), name(std::move(name)), next(bodies),
+    : NodeStep(model, settings), name(std::move(name)), next(bodies), anderson(K.size(), 6 * bodies),
       varies(!model.load_pattern().block.empty())
 {}
 
@@ -32,12 +32,14 @@ int RattleStep::advance(State& x, double h, double t_end)
     set_known_part(h);
     predict(h, 0.5 * h * h, 0.5 * h * h);  // constant accelerations, and the multipliers of t_n
     x.t = t_end;
+    anderson.start();
     for (int k = 1; k <= settings.max_iterations; ++k) {
         place(x);
         set_linear_residual(K.rows());
         balance_momentum();
         set_constraint_residual(1, x, 1);
         K.solve(e);
+        if (k > patience) anderson.accelerate(z, e);
         z += e;
         if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
             place(x);

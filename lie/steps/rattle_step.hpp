@@ -25,6 +25,7 @@
 
 #pragma once
 
+#include "lie/steps/anderson.hpp"
 #include "lie/steps/node_step.hpp"
 
 #include <string>
@@ -52,6 +53,8 @@ private:
     void set_velocities(State& x, double h);
     bool settle_loads(const State& x, double h);
 
+    static constexpr int patience = 10;  ///< corrections before they are accelerated
+    Anderson anderson;
     Loads next;         ///< of the velocities that `loads` have given
     long repeated = 0;  ///< refactorisations at the beginning of a step
     const bool varies;  ///< whether the loads depend on the state

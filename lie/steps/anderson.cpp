@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/steps/anderson.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+
+namespace hilda::lie {
+
+Anderson::Anderson(Eigen::Index unknowns, Eigen::Index measured)
+    : measured(measured), change_z(unknowns, most), change_e(unknowns, most), z_before(unknowns),
+      e_before(unknowns)
+{}
+
+void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
+{
+    if (has_before) {
+        change_z.col(next) = z - z_before;
+        change_e.col(next) = e - e_before;
+        next = (next + 1) % most;
+        count = std::min(count + 1, most);
+    }
+    z_before = z, e_before = e, has_before = true;
+    if (count == 0) return;
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
+    using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most, 1>;
+    // Normal equations, with the columns scaled to the length 1.
+    SmallVector length(count), right(count);
+    Small product(count, count);
+    for (int i = 0; i < count; ++i) length[i] = change_e.col(i).head(measured).norm();
+    if (!(length.minCoeff() > 0)) return;
+    for (int i = 0; i < count; ++i) {
+        right[i] = change_e.col(i).head(measured).dot(e.head(measured)) / length[i];
+        for (int j = 0; j < count; ++j)
+            product(i, j) =
+                change_e.col(i).head(measured).dot(change_e.col(j).head(measured)) / (length[i] * length[j]);
+    }
+    const SmallVector gamma = product.colPivHouseholderQr().solve(right);
+    if (!gamma.allFinite()) return;
+    for (int i = 0; i < count; ++i) e -= gamma[i] / length[i] * (change_z.col(i) + change_e.col(i));
+}
+
+}  // namespace hilda::lie

@@ -18,7 +18,8 @@ HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings
                                    double q, ImplicitSprings implicit_springs)
     : SaddleStep(model, settings, implicit_springs.rows()), name(std::move(name)), w(w), q(q),
       springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), Phi(model.rows()),
-      lambda(K.rows().rows()), anderson(K.size(), 6 * bodies)
+      lambda(K.rows().rows()), z_newton(K.size()), anderson(K.size(), 6 * bodies),
+      accelerates(model.pattern().algebraic.empty() && model.pattern().regularised.empty())
 {}
 
 int HalfImplicitStep::step(State& x, double h)
@@ -111,14 +112,13 @@ int HalfImplicitStep::newton(State& x)
     for (int k = 1; k <= settings.max_iterations; ++k) {
         place(x);
         place_algebraic(x, 1 / q);
-        if (k == patience + 1) refresh(x), anderson.start();
+        if (k > patience && (!accelerates || (k - patience) % accelerated == 1)) refresh(x), anderson.start();
+        z_newton = z;
         correct(refreshed ? 1 : k, x);
-        if (k > patience) {
-            z_before = z - e;
-            anderson.accelerate(z_before, e);
-            z = z_before + e;
-        }
         if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w)) return k;
+        if (k <= patience || !accelerates) continue;
+        anderson.accelerate(z_newton, e);
+        z = z_newton + e;
     }
     no_convergence(name, correction, x);
 }

@@ -14,8 +14,9 @@
 namespace hilda::lie {
 
 RattleStep::RattleStep(const System& model, const Settings& settings, std::string name)
-    : NodeStep(model, settings), name(std::move(name)), next(bodies), anderson(K.size(), 6 * bodies),
-      varies(!model.load_pattern().block.empty())
+    : NodeStep(model, settings), name(std::move(name)), loads_before(bodies), v(6 * bodies), dv(6 * bodies),
+      anderson(K.size(), 6 * bodies), of_loads(6 * bodies, 6 * bodies),
+      accelerates(model.pattern().algebraic.empty()), varies(!model.load_pattern().block.empty())
 {}
 
 Statistics RattleStep::statistics() const
@@ -39,9 +40,10 @@ int RattleStep::advance(State& x, double h, double t_end)
         balance_momentum();
         set_constraint_residual(1, x, 1);
         K.solve(e);
-        if (k > patience) anderson.accelerate(z, e);
+        const bool ends = converged(k, length_of_motion(e), K.constraint_part(e), 1);
+        if (!ends && k > patience && accelerates) anderson.accelerate(z, e);
         z += e;
-        if (converged(k, length_of_motion(e), K.constraint_part(e), 1)) {
+        if (ends) {
             place(x);
             for (Motion& body : x.body) body.A = orthonormalised(body.A);
             set_velocities(x, h);
@@ -88,49 +90,50 @@ void RattleStep::place(State& x)
 /// The second half step: ṙ, ω̄ at t_{n+1}
 void RattleStep::set_velocities(State& x, double h)
 {
-    for (int i = 0; i < bodies; ++i) {
-        x.body[i].rdot = 2 / h * z.segment<3>(6 * i) - x_n.body[i].rdot;
-        x.body[i].omega_bar = 2 / h * z.segment<3>(6 * i + 3) - x_n.body[i].omega_bar;
-    }
+    for (int i = 0; i < bodies; ++i)
+        v.segment<6>(6 * i) << 2 / h * z.segment<3>(6 * i) - x_n.body[i].rdot,
+            2 / h * z.segment<3>(6 * i + 3) - x_n.body[i].omega_bar;
+    lie::set_velocities(x, v);
     model.loads(x, loads);
     assemble_once(x);
-    change = 0;
     const bool has_history = !x.internal_state.empty() && model.internal_states_are_history();
+    of_loads.start();
     constexpr int most = 50;
-    double least = std::numeric_limits<double>::infinity();  // change
-    for (int k = 1; k <= most && !(change > 10 * least); ++k) {
+    double change = 0;
+    for (int k = 1; k <= most; ++k) {
         for (int i = 0; i < bodies; ++i) {
             e.segment<3>(6 * i) = mass.m[i] / h * z.segment<3>(6 * i) + 0.5 * h * loads.F[i];
             e.segment<3>(6 * i + 3) = -momentum(i, -z.segment<3>(6 * i + 3)) / h + 0.5 * h * loads.n_bar[i];
         }
         solve_velocities(model, K, x, e);
-        if (!varies || has_history || settle_loads(x, h)) return;
-        least = std::min(least, change);
+        if (!varies || has_history) return;
+        for (int i = 0; i < bodies; ++i)
+            dv.segment<6>(6 * i) << x.body[i].rdot - v.segment<3>(6 * i),
+                x.body[i].omega_bar - v.segment<3>(6 * i + 3);
+        const double before = std::exchange(change, dv.lpNorm<Eigen::Infinity>());
+        const double rounding = 16 * std::numeric_limits<double>::epsilon() * v.lpNorm<Eigen::Infinity>();
+        if (k > 1 && (change < rounding || settled(std::abs(h) * change, std::abs(h) * before))) return;
+        of_loads.accelerate(v, dv);
+        v += dv;
+        lie::set_velocities(x, v);
+        std::swap(loads, loads_before);
+        model.loads(x, loads);
+        // Loads that do not depend on velocities are those of the first evaluation.
+        if (k == 1 && loads.F == loads_before.F && loads.n_bar == loads_before.n_bar) return;
     }
     std::ostringstream what;
     what.precision(2);
     what << name << ": the iteration for loads that depend on velocities does not converge (last change "
-         << change << " m/s or rad/s): the damping is too strong for the step; reduce the step";
+         << change << " m/s or rad/s after " << most << " evaluations); reduce the step";
     throw NumericalFailure("newton_diverged", what.str());
 }
 
-/// Replaces `loads` by those of the velocities of x. Returns whether they are the same, apart from a change
-/// of the velocities that is below the tolerance of Newton's method.
-bool RattleStep::settle_loads(const State& x, double h)
+/// Whether the iteration of the loads ends: the change of a velocity times h is small compared with the
+/// tolerance of Newton's method, or below it and no longer decreasing because of rounding errors of the loads.
+bool RattleStep::settled(double change, double before) const
 {
-    model.loads(x, next);
-    change = 0;
-    double size = 0;
-    for (int i = 0; i < bodies; ++i) {
-        const Vec3 by_force = 0.5 * h / mass.m[i] * (next.F[i] - loads.F[i]),
-                   by_torque = 0.5 * h * (J_bar_inverse[i] * (next.n_bar[i] - loads.n_bar[i]));
-        change = std::max({change, by_force.norm(), by_torque.norm()});
-        size = std::max({size, x.body[i].rdot.norm(), x.body[i].omega_bar.norm()});
-    }
-    std::swap(loads, next);
-    constexpr double share = 1e-4;  // of the tolerance; the next iteration would reduce the change further
-    return !(std::abs(h) * change > share * settings.tolerance) ||
-           change < 4 * std::numeric_limits<double>::epsilon() * size;
+    constexpr double share = 1e-4;
+    return change <= share * settings.tolerance || (change < settings.tolerance && change > 0.5 * before);
 }
 
 }  // namespace hilda::lie

@@ -13,11 +13,11 @@
 /// exactly.
 ///
 /// The second half is the adjoint of the first, so that the step is symmetric: a step of -h returns to the
-/// start. Its loads are those of the velocities ṙ_{n+1}, ω̄_{n+1} that they determine. These are found by
-/// fixed-point iteration from 2 ṙ_{n+½} - ṙ_n, 2 ω̄_{n+½} - ω̄_n, which contracts by about h c/(2 m) for a
-/// damper c on a mass m. A symmetric step has an error with even powers of h only, which compositions and
-/// extrapolation use. Loads with a history (friction) change with each evaluation of the state; they take the
-/// starting value of the iteration, and the step is of order 2 without being symmetric.
+/// start. Its loads are those of the velocities ṙ_{n+1}, ω̄_{n+1} that they determine. These are found by a
+/// fixed-point iteration with Anderson's acceleration, from 2 ṙ_{n+½} - ṙ_n, 2 ω̄_{n+½} - ω̄_n. A symmetric
+/// step has an error with even powers of h only, which compositions and extrapolation use. Loads with a
+/// history (friction) change with each evaluation of the state; they take the starting value of the
+/// iteration, and the step is of order 2 without being symmetric.
 ///
 /// The unknowns are z = (r_{n+1} - r_n, θ, ½h² λ⁺) with the Newton matrix K(t_n), where J_r(θ)⁻¹ J̄ θ - J̄ θ
 /// is part of the residual. Velocities and accelerations take one solve each with K(t_{n+1}), which is the
@@ -51,14 +51,16 @@ private:
     void set_known_part(double h);
     void place(State& x);
     void set_velocities(State& x, double h);
-    bool settle_loads(const State& x, double h);
+    bool settled(double change, double before) const;
 
+    Loads loads_before;                  ///< of the iteration of the loads
+    Eigen::VectorXd v, dv;               ///< its iterate, the velocities of all bodies, and the correction
     static constexpr int patience = 10;  ///< corrections before they are accelerated
     Anderson anderson;
-    Loads next;         ///< of the velocities that `loads` have given
-    long repeated = 0;  ///< refactorisations at the beginning of a step
-    const bool varies;  ///< whether the loads depend on the state
-    double change = 0;  ///< of a velocity by the last iteration of the loads [m/s; rad/s]
+    Anderson of_loads;
+    const bool accelerates;  ///< not with algebraic variables: their scale differs from that of the bodies
+    const bool varies;       ///< whether the loads depend on the state
+    long repeated = 0;       ///< refactorisations at the beginning of a step
 };
 
 }  // namespace hilda::lie

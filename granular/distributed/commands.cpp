@@ -54,6 +54,9 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
             try {
                 e.find_neighbours(c.domain);
             } catch (const LeftDomain&) {  // of all processes; the first one reports it
+            } catch (const TooManyPairs&) {
+                throw io::InvalidInput(
+                    "particles: the neighbour list of a process must not have more than 2^31 pairs");
             }
             return;
         case Call::restore_list:
@@ -151,7 +154,10 @@ FirstEngine::FirstEngine(const Communicator& all, int number)
     : all(all), number(number), own(made_by_others(all, number))
 {}
 
-FirstEngine::~FirstEngine() { call({.call = Call::delete_engine}); }
+FirstEngine::~FirstEngine()
+{
+    if (!all.in_call) call({.call = Call::delete_engine});
+}
 
 void FirstEngine::call(Command command, const Lists& lists) const
 {

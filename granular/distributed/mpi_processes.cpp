@@ -2,6 +2,7 @@
 // The processes that mpirun starts.
 #include "granular/distributed/commands.hpp"
 #include "granular/distributed/processes.hpp"
+#include "io/archive.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "io/registry.hpp"
@@ -10,10 +11,12 @@
 #include <unistd.h>
 #include <zoltan.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -123,9 +126,35 @@ private:
     int engines_made = 0;
 };
 
+/// Throws io::UsageError in all processes if their arguments or folders differ: they are then meant as runs of
+/// their own.
+void require_same_arguments(const Communicator& all, int argc, char** argv)
+{
+    std::string text = std::filesystem::current_path().string();
+    for (int k = 1; k < argc; ++k) text += '\n' + std::string(argv[k]);
+    struct Sums {
+        std::uint64_t sum, largest, least;
+        Sums& operator+=(const Sums& o)
+        {
+            sum += o.sum, largest = std::max(largest, o.largest), least = std::min(least, o.least);
+            return *this;
+        }
+    };
+    const std::uint64_t own = io::checksum(text.data(), text.size());
+    const Sums sums = all.reduced_for_all(Sums{own, own, own});
+    if (sums.largest == sums.least) return;
+    MPI_Finalize();
+    if (!all.is_first()) std::_Exit(io::exit_code::wrong_command_line);  // one message is enough
+    throw io::UsageError(
+        "mpirun: the processes have different arguments or folders; they compute one case together, and runs "
+        "of "
+        "their own are started without mpirun (or with --threads N on one machine)");
+}
+
 std::unique_ptr<Processes> start(int& argc, char**& argv)
 {
-    bool is_started = false;
+    // srun with PMIx sets no variable with the number of processes.
+    bool is_started = std::getenv("PMIX_RANK") != nullptr;
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"})
         if (const char* const size = std::getenv(name); size != nullptr)
             is_started = is_started || std::atoi(size) > 1;
@@ -137,6 +166,7 @@ std::unique_ptr<Processes> start(int& argc, char**& argv)
         MPI_Finalize();
         return nullptr;
     }
+    require_same_arguments(Communicator(MPI_COMM_WORLD), argc, argv);
     float version = 0;
     if (Zoltan_Initialize(argc, argv, &version) != ZOLTAN_OK)
         throw std::runtime_error("Zoltan_Initialize of Zoltan has failed");

@@ -87,10 +87,11 @@ void Partition::place(std::uint32_t block, double* x) const
     x[0] = i + (j + k / nz) / ny, x[1] = j + (k + i / nx) / nz, x[2] = k + (i + j / ny) / nx;
 }
 
-void Partition::make(const BlockGrid& grid, const std::vector<BlockWork>& work)
+void Partition::make(const CellGrid& cells, std::int32_t shift, const std::vector<BlockWork>& work)
 {
-    blocks = grid;
-    owners.assign(static_cast<std::size_t>(grid.count()), -1);
+    blocks = BlockGrid(cells, shift);
+    std::copy_n(cells.cells, 3, of_cells);
+    owners.assign(static_cast<std::size_t>(blocks.count()), -1);
     is_cut = all.reduced_for_all(NumberOfBlocks{work.size()}).count > 0;
     if (!is_cut) return;
     Objects objects{*this, work};

@@ -7,6 +7,7 @@
 #include "granular/core/particles.hpp"
 #include "granular/distributed/communicator.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -54,8 +55,13 @@ public:
 
     /// Distributes the blocks. `work`: blocks and weights of this process; each block is that of one process
     /// only.
-    void make(const BlockGrid& grid, const std::vector<BlockWork>& work);
+    void make(const CellGrid& cells, std::int32_t shift, const std::vector<BlockWork>& work);
     const BlockGrid& grid() const { return blocks; }
+    /// Whether the domain with these cells has been divided
+    bool is_for(const CellGrid& cells) const
+    {
+        return is_cut && std::equal(cells.cells, cells.cells + 3, of_cells);
+    }
 
     /// The process that has a block
     int owner(std::uint32_t block) const
@@ -72,8 +78,9 @@ private:
     const Communicator& all;
     Zoltan_Struct* zoltan;
     BlockGrid blocks;
-    bool is_cut = false;              ///< whether Zoltan has cut the domain; there were blocks with work
-    mutable std::vector<int> owners;  ///< -1: not known yet
+    std::int32_t of_cells[3] = {0, 0, 0};  ///< number of cells along each axis
+    bool is_cut = false;                   ///< whether Zoltan has cut the domain; there were blocks with work
+    mutable std::vector<int> owners;       ///< -1: not known yet
 };
 
 }  // namespace hilda::granular

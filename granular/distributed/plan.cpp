@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/distributed/plan.hpp"
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -39,6 +40,13 @@ Plan::~Plan() { Zoltan_Comm_Destroy(&plan); }
 
 void Plan::exchange(const char* values, int bytes, char* received) const
 {
+    // Zoltan and MPI count the bytes of a message by an int.
+    for (const auto* groups : {&groups_sent, &groups_received})
+        for (const Group& g : *groups)
+            if (static_cast<double>(g.values) * bytes > std::numeric_limits<int>::max())
+                throw std::runtime_error(
+                    "a message of a run on several processes would be longer than 2 GiB; use more "
+                    "processes");
     // Zoltan does not change the values.
     check(Zoltan_Comm_Do(plan, tag, const_cast<char*>(values), bytes, received), "Zoltan_Comm_Do");
 }

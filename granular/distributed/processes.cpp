@@ -5,11 +5,16 @@
 #include "io/registry.hpp"
 
 #include <cstdlib>
+#include <cstring>
 
 namespace hilda::granular {
 
 std::unique_ptr<Processes> start_processes(int& argc, char**& argv)
 {
+    // A process that exchanges messages with hilda is not one of a run on several processes, even if mpirun has
+    // started hilda.
+    for (int k = 1; k < argc; ++k)
+        if (std::strcmp(argv[k], "--exchange") == 0) return nullptr;
     for (const ProcessesType& type : io::Registry<ProcessesType>::all())
         if (std::unique_ptr<Processes> processes = type.start(argc, argv)) return processes;
     const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");

@@ -39,7 +39,8 @@ struct Listed {
 
 /// Calls f(process, portion) for all processes from the last to the first.
 template <class F>
-void each_portion(const Arrays<par::Cpu>& whole, int processes, const std::vector<int>& owner, const F& f)
+void each_portion(const Arrays<par::Cpu>& whole, bool keeps_list, int processes,
+                  const std::vector<int>& owner, const F& f)
 {
     const Particles<par::Cpu>& p = whole.particle;
     const Pairs<par::Cpu>& pairs = whole.pairs;
@@ -61,7 +62,9 @@ void each_portion(const Arrays<par::Cpu>& whole, int processes, const std::vecto
         portion.particles.clear(), portion.partners.clear(), portion.contacts.clear(), partners.clear();
         for (std::uint32_t m = particles.start[of]; m < particles.start[of + 1]; ++m) {
             place[particles.number[m]] = m - particles.start[of];
-            portion.particles.push_back(record_of(p, particles.number[m]));
+            ParticleRecord r = record_of(p, particles.number[m]);
+            if (!keeps_list) r.position_at_build = r.position;
+            portion.particles.push_back(r);
         }
         const auto place_of = [&](std::uint32_t k) {
             if (place[k] == none) {
@@ -85,11 +88,36 @@ void each_portion(const Arrays<par::Cpu>& whole, int processes, const std::vecto
 
 }  // namespace
 
+/// The blocks with particles, with the number of particles as weights. Chooses the size of the blocks.
+template <class Cell>
+std::vector<BlockWork> RankEngine::loaded_blocks(const Particles<par::Cpu>& p, const CellGrid& g,
+                                                 const Cell& cell, std::int32_t& size) const
+{
+    constexpr double most_blocks = 1 << 22;  // smaller blocks would need too much memory in a domain that is
+                                             // almost empty
+    constexpr std::size_t each = 64;         // blocks of a process
+    std::vector<BlockWork> loaded;
+    for (const std::int32_t shift : Partition::shifts) {
+        const BlockGrid blocks(g, shift);
+        if (!loaded.empty() && blocks.count() > most_blocks) break;
+        size = shift;
+        std::vector<float> weight(static_cast<std::size_t>(blocks.count()));
+        for (std::uint32_t k = 0; k < p.count; ++k)
+            ++weight[blocks.block_of(g.x_of(cell(k)), g.y_of(cell(k)), g.z_of(cell(k)))];
+        loaded.clear();
+        for (std::uint32_t b = 0; b < weight.size(); ++b)
+            if (weight[b] > 0) loaded.push_back({b, weight[b]});
+        if (loaded.size() >= each * static_cast<std::size_t>(all.size())) break;
+    }
+    return loaded;
+}
+
 void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool keeps_list)
 {
     const CellGrid& g = domain.grid;
     struct Start {
         std::int32_t shift;
+        bool keeps_division;
         UsedArrays used;
     } begin{};
     std::vector<BlockWork> loaded;
@@ -98,29 +126,21 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
         return keeps_list ? p.position_at_build.data()[k].cell : p.position.data()[k].cell;
     };
     if (whole != nullptr) {
-        Particles<par::Cpu>& p = whole->particle;
-        if (!keeps_list) {
-            p.position_at_build.resize(p.count);
-            std::copy_n(p.position.data(), p.count, p.position_at_build.data());
-        }
+        const Particles<par::Cpu>& p = whole->particle;
         begin.used = {p.acc.size() > 0, p.orientation.size() > 0};
-        for (const std::int32_t shift : Partition::shifts) {
-            const BlockGrid blocks(g, shift);
-            begin.shift = shift;
-            std::vector<float> weight(static_cast<std::size_t>(blocks.count()));
-            for (std::uint32_t k = 0; k < p.count; ++k)
-                ++weight[blocks.block_of(g.x_of(cell(k)), g.y_of(cell(k)), g.z_of(cell(k)))];
-            loaded.clear();
-            for (std::uint32_t b = 0; b < weight.size(); ++b)
-                if (weight[b] > 0) loaded.push_back({b, weight[b]});
-            constexpr std::size_t each = 64;  // blocks of a process
-            if (loaded.size() >= each * static_cast<std::size_t>(all.size())) break;
-        }
+        // Insertions and outflow distribute the particles again and again.
+        constexpr long most_steps = 1000;
+        begin.shift = partition.grid().shift;
+        begin.keeps_division = partition.is_for(g) && steps_since_division < most_steps;
+        if (!begin.keeps_division) loaded = loaded_blocks(p, g, cell, begin.shift);
     }
     all.broadcast(&begin, sizeof begin);
     used = begin.used;
-    partition.make(BlockGrid(g, begin.shift), loaded);
-    surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
+    if (!begin.keeps_division) {
+        partition.make(g, begin.shift, loaded);
+        surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
+        busy = work = 0, steps = steps_since_division = 0, is_measured = false;
+    }
 
     const auto take = [&](const Portion& mine) {
         const auto particles = static_cast<std::uint32_t>(mine.particles.size()),
@@ -141,7 +161,7 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
     if (whole != nullptr) {
         owner.resize(whole->particle.count);
         for (std::uint32_t k = 0; k < owner.size(); ++k) owner[k] = owner_of(g, cell(k));
-        each_portion(*whole, all.size(), owner, [&](int process, const Portion& portion) {
+        each_portion(*whole, keeps_list, all.size(), owner, [&](int process, const Portion& portion) {
             if (process == all.rank()) return take(portion);
             all.send(process, portion.particles), all.send(process, portion.partners);
             all.send(process, portion.contacts);
@@ -152,9 +172,9 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
         take(mine);
     }
     own.pairs.start.resize(0);
+    find_attached();
     grid = g;
     ghost_plan.reset();
-    busy = work = 0, steps = 0, is_measured = false;
 }
 
 namespace {
@@ -276,6 +296,9 @@ void RankEngine::gather(Arrays<par::Cpu>* whole)
     Particles<par::Cpu>& p = whole->particle;
     Pairs<par::Cpu>& to = whole->pairs;
     const auto n = static_cast<std::uint32_t>(places.size());
+    std::uint64_t all_pairs = 0;
+    for (const Place& of : places) all_pairs += of.length;
+    if (all_pairs >= PairView::boundary_bit) throw TooManyPairs();
     std::uint32_t largest_id = 0, pairs = 0;
     std::vector<std::uint32_t> place_of(n);  // by process and number
     to.start.resize(n + std::size_t{1});

@@ -156,8 +156,8 @@ void RankEngine::divide_again(const Domain& domain)
     std::sort(blocks.begin(), blocks.end(),
               [](const BlockWork& a, const BlockWork& b) { return a.block < b.block; });
     merge(blocks);
-    const BlockGrid grid = partition.grid();
-    partition.make(grid, blocks);
+    partition.make(g, partition.grid().shift, blocks);
+    steps_since_division = 0;
     std::fill(surrounded.begin(), surrounded.end(), static_cast<signed char>(-1));
     // The work that each process has now
     Addressed<BlockWork> next;
@@ -296,7 +296,16 @@ void RankEngine::rebuild(const Domain& domain)
         if ((j & PairView::boundary_bit) == 0 && owner[j] != owner[i]) send_to(owner[j]);
     }
     std::vector<ParticleRecord> added = exchanged(all, leaving);
-    const std::vector<ContactHistory> arrived = exchanged(all, leaving_contacts);
+    std::vector<ContactHistory> arrived = exchanged(all, leaving_contacts);
+    // Two processes send the contact of two particles that both come here.
+    const auto pair_of = [](const ContactHistory& c) { return std::pair(c.i, c.j); };
+    std::sort(arrived.begin(), arrived.end(),
+              [&](const ContactHistory& a, const ContactHistory& b) { return pair_of(a) < pair_of(b); });
+    arrived.erase(std::unique(arrived.begin(), arrived.end(),
+                              [&](const ContactHistory& a, const ContactHistory& b) {
+                                  return pair_of(a) == pair_of(b);
+                              }),
+                  arrived.end());
     const auto staying = static_cast<std::uint32_t>(stay.size()),
                first_ghost = staying + static_cast<std::uint32_t>(added.size());
 
@@ -431,7 +440,7 @@ float RankEngine::advance(const StepParameters& step)
     if (step.part != Part::only_loads) send_ghosts();
     if (step.part != Part::before_loads) {
         work += own.pairs.count + 4. * own.particle.count;
-        ++steps;
+        ++steps, ++steps_since_division;
     }
     extremes = all.reduced(extremes);
     largest_overlap = par::nan_max(largest_overlap, extremes.overlap.value);

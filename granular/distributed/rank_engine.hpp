@@ -57,6 +57,9 @@ private:
     {
         return partition.owner(partition.grid().block_of(g.x_of(cell), g.y_of(cell), g.z_of(cell)));
     }
+    template <class Cell>
+    std::vector<BlockWork> loaded_blocks(const Particles<par::Cpu>& p, const CellGrid& g, const Cell& cell,
+                                         std::int32_t& size) const;
     void assign_cells(const Domain& domain);
     void divide_again(const Domain& domain);
     void rebuild(const Domain& domain);
@@ -86,7 +89,8 @@ private:
     float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
     double busy = 0, work = 0;  ///< CPU time of the steps since the last division [s], and their work
     long steps = 0;             ///< since then
-    bool is_measured = false;   ///< whether they have been compared with those of the other processes
+    long steps_since_division = 0;
+    bool is_measured = false;  ///< whether they have been compared with those of the other processes
 };
 
 }  // namespace hilda::granular

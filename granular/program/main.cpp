@@ -160,7 +160,6 @@ void share(Options& o, Processes& processes, bool is_validation)
     };
     if (is_validation) refuse("the validation " + o.run.file + " runs");
     if (o.device.kind != Device::cpu) refuse("--device " + o.device_name + " is possible");
-    if (o.exchanges) refuse("--exchange is possible");
     o.device.source = &processes.engines();
 }
 

@@ -154,6 +154,13 @@ def refusals(runs):
     runs.case("clumps", **dict(DAM, **CLUMP, insert=[], particles=[{"clump": "pair", "r": [0.006, 0.004, 0.012]}]))
     runs.refused_on(2, "clumps", 3, "/clumps")
     runs.refused_on(2, "dam", 2, "--device cuda", "--device", "cuda")
+    # two runs of their own, each with its output
+    shell = f"{runs.program} dam.json --output own$OMPI_COMM_WORLD_RANK"
+    ended = subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", "2", "sh", "-c", shell], cwd=runs.folder,
+                           env=runs.environment, capture_output=True, text=True, timeout=120, check=False)
+    lines = [line for line in ended.stderr.split("\n") if line.startswith("hilda: error")]
+    expect(ended.returncode == 2 and len(lines) == 1 and "different arguments" in lines[0], f"different arguments: {ended}")
+    expect(not (runs.folder / "own0").exists(), "different arguments: no files are written")
 
 
 def main():

@@ -6,7 +6,7 @@
 /// Φ is a step of rA-rattle. It is symmetric, so that a symmetric composition raises the order from 2 to 4
 /// (Suzuki 1990, s = 5), 6 (Kahan, Li 1997, s = 9) and 8 (Kahan, Li 1997, s = 17). The composition is
 /// symmetric, symplectic for loads with a potential, and conserves momentum. Some of the steps are negative:
-/// loads with a history, such as friction, cannot be evaluated backwards and are refused.
+/// loads with a history, such as friction, and contacts cannot be evaluated backwards and are refused.
 ///
 /// r, A, ṙ, ω̄ and λ are of the order of the composition.
 
@@ -109,8 +109,7 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .order_lambda = order,
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
-            .source = source,
-            .algebraic = true};
+            .source = source};
 }
 
 const bool registered = register_scheme<Rattle4>(composition("rA-rattle-4", 4, "Suzuki (1990)")) &&

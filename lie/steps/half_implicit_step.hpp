@@ -86,8 +86,8 @@ private:
     Eigen::VectorXd z_newton;               ///< z before a correction
     static constexpr int accelerated = 10;  ///< accelerated corrections before K is refreshed again
     Anderson anderson;
-    /// Whether slow corrections are accelerated. With algebraic variables or friction rows, whose scale differs
-    /// from that of the bodies, K is refreshed at each iterate.
+    /// Whether slow corrections are accelerated. With algebraic variables or friction rows, whose scale
+    /// differs from that of the bodies, K is refreshed at each iterate.
     const bool accelerates;
 };
 

@@ -129,7 +129,8 @@ void RattleStep::set_velocities(State& x, double h)
 }
 
 /// Whether the iteration of the loads ends: the change of a velocity times h is small compared with the
-/// tolerance of Newton's method, or below it and no longer decreasing because of rounding errors of the loads.
+/// tolerance of Newton's method, or below it and no longer decreasing because of rounding errors of the
+/// loads.
 bool RattleStep::settled(double change, double before) const
 {
     constexpr double share = 1e-4;

@@ -100,8 +100,14 @@ TEST_CASE("forces with internal states reproduce the closed-form motion", "[dae]
         const auto integrator = scheme.make(two.model, {});
         constexpr double h = 1e-3, t = 0.5;
         lie::March march(two.x, *integrator, h);
-        for (int n = 0; n < 500; ++n) march.advance({});
         INFO(scheme.name);
+        try {
+            for (int n = 0; n < 500; ++n) march.advance({});
+        } catch (const lie::InvalidInput& refusal) {
+            // Bristles cannot be integrated backwards.
+            REQUIRE_THAT(refusal.what(), Catch::Contains("some of its internal steps are negative"));
+            continue;
+        }
         CHECK(march.node().body[0].r.x() - 1 == Approx(std::sin(2 * t) / 2).margin(2e-3));
         const double omega = std::sqrt(10 / 2.0), t_1 = std::asin(0.1 * omega) / omega, s = t - t_1;
         const double slipped = 0.1 + std::cos(omega * t_1) * s - 0.25 * s * s;

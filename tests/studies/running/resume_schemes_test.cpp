@@ -43,14 +43,22 @@ TEST_CASE("each scheme continues from a checkpoint with the same digits", "[stud
     const std::vector<std::string> implicit = {
         R"(/contacts/0/friction={"law": "implicit", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100})"};
     const bool regularised = name == "braked_ball_in_bowl";
-    dae::Description d = dae::read_model(studies::problem(name).model, name,
-                                         regularised ? implicit : std::vector<std::string>());
-    const int last = d.model->bodies() - 1;
-    d.model->load(tests::Bristle(dae::ground, last, 0.5, 10));
-    if (last > 0) d.model->load(tests::Bristle(0, last, 2, 1e-4));
-    dae::start(d);
+    const auto described = [&](bool has_bristles) {
+        dae::Description d = dae::read_model(studies::problem(name).model, name,
+                                             regularised ? implicit : std::vector<std::string>());
+        const int last = d.model->bodies() - 1;
+        if (has_bristles) d.model->load(tests::Bristle(dae::ground, last, 0.5, 10));
+        if (has_bristles && last > 0) d.model->load(tests::Bristle(0, last, 2, 1e-4));
+        dae::start(d);
+        return d;
+    };
+    dae::Description with_bristles = described(true), without = described(false);
     for (const lie::Scheme& scheme : lie::schemes()) {
+        // Compositions of RATTLE have negative steps, in which bristles cannot be integrated.
+        dae::Description& d = scheme.name.starts_with("rA-rattle-") ? without : with_bristles;
         if (scheme.adaptive) continue;
+        const bool has_history = !d.x.internal_state.empty() && d.model->internal_states_are_history();
+        if (&d == &without && has_history) continue;  // of a contact
         if (!d.model->general_constraints().empty() && !(scheme.algebraic && scheme.nonholonomic)) continue;
         if (regularised && !scheme.regularised) continue;
         const lie::Settings settings{
@@ -95,7 +103,8 @@ TEST_CASE("each scheme continues from a checkpoint with the same digits", "[stud
               counted.factorizations - read.statistics.factorizations);
         CHECK(of_rest.refactorizations - of_restoration.refactorizations ==
               counted.refactorizations - read.statistics.refactorizations);
-        if (last > 0) CHECK(read.node.internal_state != d.x.internal_state);
+        if (&d == &without) continue;
+        if (d.model->bodies() > 1) CHECK(read.node.internal_state != d.x.internal_state);
 
         // a changed internal state variable of a force changes the result
         lie::State changed = read.node;

@@ -126,8 +126,8 @@ private:
     int engines_made = 0;
 };
 
-/// Throws io::UsageError in all processes if their arguments or folders differ: they are then meant as runs of
-/// their own.
+/// Throws io::UsageError in all processes if their arguments or folders differ: they are then meant as runs
+/// of their own.
 void require_same_arguments(const Communicator& all, int argc, char** argv)
 {
     std::string text = std::filesystem::current_path().string();

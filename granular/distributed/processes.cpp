@@ -11,8 +11,8 @@ namespace hilda::granular {
 
 std::unique_ptr<Processes> start_processes(int& argc, char**& argv)
 {
-    // A process that exchanges messages with hilda is not one of a run on several processes, even if mpirun has
-    // started hilda.
+    // A process that exchanges messages with hilda is not one of a run on several processes, even if mpirun
+    // has started hilda.
     for (int k = 1; k < argc; ++k)
         if (std::strcmp(argv[k], "--exchange") == 0) return nullptr;
     for (const ProcessesType& type : io::Registry<ProcessesType>::all())

@@ -36,6 +36,9 @@ const std::vector<SettingOption>& setting_options()
     static const std::vector<SettingOption> all = {
         {"--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
          [](auto& s, Text option, Text text) { s.tolerance = positive_number(option, text); }},
+        {"--max-iterations", "N",
+         "largest number of Newton corrections of a step, before it fails; default: 30",
+         [](auto& s, Text option, Text text) { s.max_iterations = positive_count(option, text); }},
         {"--linear-solver", "auto|klu|condensed",
          "solver of the saddle-point system; default: auto, the one with fewer operations",
          [](auto& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); }},

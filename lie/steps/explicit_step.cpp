@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/steps/explicit_step.hpp"
+
+#include "lie/steps/projection.hpp"
+#include "lie/system.hpp"
+
+namespace hilda::lie {
+
+ExplicitStep::ExplicitStep(const System& model, const Settings& settings)
+    : NodeStep(model, settings), theta(Eigen::VectorXd::Zero(3 * bodies))
+{}
+
+void ExplicitStep::set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const
+{
+    for (int i = 0; i < bodies; ++i) {
+        const Motion& body = x.body[i];
+        slope.segment<12>(12 * i) << body.rdot,
+            right_jacobian_inverse(theta.segment<3>(3 * i)) * body.omega_bar, body.rddot, body.omegadot_bar;
+    }
+}
+
+void ExplicitStep::place(State& x, const Eigen::VectorXd& d)
+{
+    for (int i = 0; i < bodies; ++i) {
+        const Motion& from = x_n.body[i];
+        Motion& body = x.body[i];
+        const Vec12 change = d.segment<12>(12 * i);
+        theta.segment<3>(3 * i) = change.segment<3>(3);
+        body.r = from.r + change.head<3>();
+        body.A = from.A * exp(change.segment<3>(3));
+        body.rdot = from.rdot + change.segment<3>(6);
+        body.omega_bar = from.omega_bar + change.tail<3>();
+    }
+}
+
+int ExplicitStep::finish(State& x, const std::string& scheme)
+{
+    for (int k = 1; k <= settings.max_iterations; ++k) {
+        set_position_residual(model, K, x, e);
+        K.solve(e);
+        move(K, x, e);
+        if (!converged(k, length_of_motion(e), K.constraint_part(e), 0)) continue;
+        assemble_once(x);
+        set_momenta(model, x, e);
+        solve_velocities(model, K, x, e);
+        set_accelerations(x);
+        return k;
+    }
+    no_convergence(scheme, correction, x);
+}
+
+}  // namespace hilda::lie

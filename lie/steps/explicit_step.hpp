@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Base class of the explicit Runge-Kutta methods on the index-1 equations.
+
+#pragma once
+
+#include "lie/steps/node_step.hpp"
+
+namespace hilda::lie {
+
+/// Stages of a Runge-Kutta-Munthe-Kaas method, and the projection at its end.
+///
+///     A = A_n exp(θ̃),   θ̇ = J_r(θ)⁻¹ ω̄,   (r̈, ω̄̇, λ) from K (r̈, ω̄̇, λ) = (F, τ̄, γ)
+///
+/// is a differential equation for (r, θ, ṙ, ω̄) of each body.  Munthe-Kaas (1998), BIT 38, 92-111. The state
+/// at the beginning of the step is x_n; its accelerations are known.
+class ExplicitStep : public NodeStep {
+public:
+    ExplicitStep(const System& model, const Settings& settings);
+
+protected:
+    using Vec12 = Eigen::Matrix<double, 12, 1>;
+
+    /// slope = d/dt (r, θ, ṙ, ω̄) of the stage x, whose θ place() has set
+    void set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const;
+
+    /// The poses and velocities of x are those of x_n changed by d, the increments of (r, θ, ṙ, ω̄).
+    void place(State& x, const Eigen::VectorXd& d);
+
+    /// The end of a step: projects the positions of x onto Φ = 0 by Newton steps with the present K, then the
+    /// velocities onto Φ_r ṙ + Π̄ ω̄ = ν, and computes accelerations and multipliers.
+    ///
+    /// The corrections are the shortest in the metric of the mass. They are of the size of the local error,
+    /// so that the order remains (Hairer, Lubich, Wanner 2006, Sec. IV.4). Returns the number of Newton
+    /// steps.
+    int finish(State& x, const std::string& scheme);
+
+    Eigen::VectorXd theta;  ///< θ of each body at the stage
+};
+
+}  // namespace hilda::lie

@@ -9,7 +9,8 @@ bool Force::is_implicit_in(const lie::Scheme& scheme) const { return implicit &&
 
 double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const
 {
-    return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity() : stable_step(x, scheme.loads);
+    return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity()
+                                  : scheme.stability / 2 * stable_step(x, scheme.loads);
 }
 
 }  // namespace hilda::dae

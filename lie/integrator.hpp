@@ -45,7 +45,8 @@ public:
     /// Chooses the pivots in the state x for steps of the length h.
     virtual void choose_pivots(const State& /*x*/, double /*h*/) {}
 
-    /// Whether a step of the length h consists of internal steps that the scheme chooses
+    /// Whether a step of the length h consists of internal steps that the scheme chooses. Such a scheme calls
+    /// System::accepted() for each of them and for its result.
     virtual bool chooses_internal_steps() const { return false; }
 
     virtual const System& system() const = 0;

@@ -26,10 +26,16 @@ struct Scheme {
     std::string formulation;       ///< rA, rp or reps
     std::string unknowns;          ///< of the Newton iteration
     std::string source;            ///< reference
-    /// Whether the scheme chooses internal steps from rtol and atol. Its past steps are not part of State; a
-    /// run cannot be resumed.
-    bool adaptive = false;
+    bool adaptive = false;         ///< whether the scheme chooses internal steps from rtol and atol
+    /// Whether State contains all that a continued run needs. Otherwise a run cannot be resumed.
+    bool resumes = true;
+    /// For a scheme of fixed step that can also choose its steps: the same scheme with internal steps. It is
+    /// not in the list.
+    std::shared_ptr<const Scheme> adaptive_form = nullptr;
     LoadEvaluation loads = LoadEvaluation::at_step;
+    /// Largest h ω for which an undamped oscillator does not gain energy, at most 2. The stability limits of
+    /// forces are those of 2.
+    double stability = 2;
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
@@ -41,6 +47,9 @@ struct Scheme {
     bool rho_infinity =
         false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
+
+    /// The scheme that chooses its steps, if there is one; otherwise this scheme
+    const Scheme& with_adaptive_steps() const { return adaptive_form ? *adaptive_form : *this; }
 
     /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of
     /// the system.

@@ -105,7 +105,7 @@ void March::advance(std::span<Observer* const> observers)
     const int k = try_step(after);
     if (n > 0) integrator.fill_node(x, after);  // the start has its own accelerations and multipliers
     // Before the observers: if accepted() throws, finish() passes this node to them.
-    integrator.system().accepted(x, after);
+    if (!integrator.chooses_internal_steps()) integrator.system().accepted(x, after);
     for (Observer* o : observers) o->accepted(x, n, iterations);
     std::swap(x, after);
     ++n;
@@ -135,7 +135,14 @@ Trajectory march(State x, Integrator& integrator, const TimeGrid& grid, std::spa
         explicit Recorder(const TimeGrid& grid) : grid(grid) {}
         void accepted(const State& node, long n, int) override
         {
-            if (grid.is_row(n)) trajectory.row.push_back(node);
+            if (!grid.is_row(n)) return;
+            trajectory.row.push_back({.t = node.t,
+                                      .body = node.body,
+                                      .alpha = node.alpha,
+                                      .lambda = node.lambda,
+                                      .discrete_state = node.discrete_state,
+                                      .internal_state = node.internal_state,
+                                      .history = {}});
         }
     } recorder(grid);
 

@@ -44,7 +44,7 @@ public:
     virtual void accepted(const State& node, long n, int iterations) = 0;
 };
 
-/// The output rows of a run
+/// The output rows of a run. They have no State::history: a run cannot be continued from them.
 struct Trajectory {
     std::vector<State> row;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evolving/unilateral.hpp"
 
+#include "contact/compliant/contact_force.hpp"
 #include "dae/model.hpp"
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
@@ -384,6 +385,17 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, const State& from,
 std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const lie::Scheme& scheme,
                                                  const lie::Settings& settings)
 {
+    // The state of a contact changes at the ends of steps, with an error that the estimate of a step does not
+    // contain. An explicit step may also pass over a contact that closes.
+    const auto refuse_adaptive = [&](const std::string& contact) {
+        if (scheme.adaptive && scheme.loads != lie::LoadEvaluation::implicit)
+            lie::reject("integrator " + scheme.name,
+                        "adaptive steps do not support contacts; use a fixed step", contact);
+    };
+    for (const auto& f : model.forces())
+        if (dynamic_cast<const ContactForce*>(f.get()) != nullptr) refuse_adaptive(f->label());
+    for (const auto& c : model.general_constraints())
+        if (c->algebraic_variables() > 0) refuse_adaptive("contact '" + c->name + "'");
     for (const auto& c : model.general_constraints())
         if (c->may_be_inactive()) return std::make_unique<UnilateralStep>(model, scheme, settings);
     return scheme.make(model, settings);

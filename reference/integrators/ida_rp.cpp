@@ -38,6 +38,7 @@ bool register_ida(const std::string& name, const std::string& unknowns, const st
          .unknowns = unknowns,
          .source = "SUNDIALS IDA; Fang (2022), Eq. 2.23",
          .adaptive = true,
+         .resumes = false,
          .loads = lie::LoadEvaluation::implicit});
 }
 

@@ -49,6 +49,7 @@ Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
         return;
     }
     scheme = &lie::scheme(options.reference);
+    if (!options.reference_step) scheme = &scheme->with_adaptive_steps();
     if (scheme->adaptive) {
         if (options.reference_step)
             context.refuse("the reference " + scheme->name +

@@ -40,7 +40,8 @@ void refuse_unused_settings(const std::string& where, const std::vector<std::str
             continue;
         std::string users;
         for (const lie::Scheme& scheme : lie::schemes())
-            if (uses(scheme, option)) users += (users.empty() ? "" : ", ") + scheme.name;
+            if (uses(scheme, option) || uses(scheme.with_adaptive_steps(), option))
+                users += (users.empty() ? "" : ", ") + scheme.name;
         throw io::UsageError(where + ": no selected integrator uses " + option + "; it is for " + users);
     }
 }

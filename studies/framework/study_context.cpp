@@ -139,8 +139,13 @@ Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
         if (defaults.empty())
             for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
     }
+    const auto& given = options.given_settings;
+    for (const lie::Scheme*& scheme : selected)
+        if (std::any_of(given.begin(), given.end(),
+                        [](const std::string& name) { return name == "--rtol" || name == "--atol"; }))
+            scheme = &scheme->with_adaptive_steps();
     Schemes users = selected;
-    if (!options.reference.empty()) users.push_back(&lie::scheme(options.reference));
+    if (!options.reference.empty()) users.push_back(&lie::scheme(options.reference).with_adaptive_steps());
     refuse_unused_settings("study " + name, options.given_settings, users);
     return selected;
 }

@@ -47,7 +47,7 @@ public:
     [[noreturn]] void refuse(const std::string& what) const;
 
     /// The integrators of --integrator; without it those of `defaults` that are registered, in this order, or
-    /// all if `defaults` is empty
+    /// all if `defaults` is empty. A scheme with both forms has adaptive steps if --rtol or --atol is given.
     Schemes schemes(const std::vector<std::string>& defaults = {}) const;
     /// The same, restricted to schemes with a fixed step. io::UsageError if --integrator names an adaptive
     /// scheme.

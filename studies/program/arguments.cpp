@@ -32,15 +32,15 @@ std::vector<double> descending(const std::string& option, const std::string& tex
 double relative_tolerance(const std::string& option, const std::string& text)
 {
     const double value = io::finite_number_in(text);
-    if (!(value >= 1e-14 && value < 1))
-        refuse_option(option, "must be a number from 1e-14 (limit of double precision) to below 1", text);
+    if (!(value >= 1e-14 && value <= 0.1))
+        refuse_option(option, "must be a number from 1e-14 (limit of double precision) to 0.1", text);
     return value;
 }
 
 double absolute_tolerance(const std::string& option, const std::string& text)
 {
     const double value = io::finite_number_in(text);
-    if (!(value >= 1e-14)) refuse_option(option, "must be a finite number, at least 1e-14", text);
+    if (!(value >= 1e-14 && value <= 0.1)) refuse_option(option, "must be a number from 1e-14 to 0.1", text);
     return value;
 }
 

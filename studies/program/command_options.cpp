@@ -50,10 +50,11 @@ const std::vector<SettingOption>& setting_options()
          "change the body frame when Euler angles approach a singular orientation, instead of stopping",
          [](auto& s, Text, Text) { s.reparametrise = true; }},
         {"--rtol", "RTOL",
-         "relative local error tolerance of integrators with adaptive steps, such as ida-rp; default: 1e-10",
+         "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, ida-rp), 1e-14 to 0.1; "
+         "default: 1e-10",
          [](auto& s, Text option, Text text) { s.rtol = relative_tolerance(option, text); }},
         {"--atol", "ATOL",
-         "absolute local error tolerance of integrators with adaptive steps; default: that of --rtol",
+         "absolute local error tolerance of adaptive steps, 1e-14 to 0.1; default: that of --rtol",
          [](auto& s, Text option, Text text) { s.atol = absolute_tolerance(option, text); }}};
     return all;
 }

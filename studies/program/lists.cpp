@@ -131,6 +131,7 @@ int list_integrators(bool json)
                            {"order", s.adaptive ? io::Json() : io::Json(s.order)},
                            {"order_lambda", s.adaptive ? io::Json() : io::Json(s.order_lambda)},
                            {"adaptive", s.adaptive},
+                           {"adaptive_without_step", s.with_adaptive_steps().adaptive},
                            {"evolving_contacts", s.algebraic},
                            {"rolling_contacts", s.algebraic && s.nonholonomic},
                            {"formulation", s.formulation},

@@ -28,15 +28,27 @@ std::vector<std::string> directories(const RunOptions& options)
     return all;
 }
 
-/// Rejects options that do not apply to an integrator with adaptive steps
+/// The scheme with this name. If it has both forms, --step selects that with a fixed step.
+const lie::Scheme& scheme_of(const std::string& name, const RunOptions& options)
+{
+    const lie::Scheme& scheme = lie::scheme(name);
+    return options.step ? scheme : scheme.with_adaptive_steps();
+}
+
+/// Rejects options that do not apply to an integrator with adaptive steps, or to one that could have them
 void refuse_for_adaptive(const RunOptions& options)
 {
     for (const std::string& name : options.integrators) {
-        if (!lie::scheme(name).adaptive) continue;
+        const lie::Scheme& scheme = scheme_of(name, options);
         const auto refuse = [&](const std::string& why) { throw io::UsageError("run: " + name + " " + why); };
+        for (const std::string& option : options.given_settings)
+            if (options.step && scheme.adaptive_form && (option == "--rtol" || option == "--atol"))
+                refuse("has a fixed step with --step, and adaptive steps with " + option +
+                       "; give one of them");
+        if (!scheme.adaptive) continue;
         if (options.step)
             refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
-        if (options.resume || options.checkpoint > 0)
+        if (!scheme.resumes && (options.resume || options.checkpoint > 0))
             refuse(
                 "stores past steps outside the state; --checkpoint and --resume are for fixed-step schemes");
         if (options.error) refuse("chooses its own steps; --error is for fixed-step schemes");
@@ -51,7 +63,7 @@ int run_model(const RunOptions& options)
 {
     refuse_for_adaptive(options);
     std::vector<const lie::Scheme*> schemes;
-    for (const std::string& name : options.integrators) schemes.push_back(&lie::scheme(name));
+    for (const std::string& name : options.integrators) schemes.push_back(&scheme_of(name, options));
     refuse_unused_settings("run", options.given_settings, schemes);
     const std::vector<std::string> directory = directories(options);
     const io::Interrupt interrupt;
@@ -64,7 +76,7 @@ int run_model(const RunOptions& options)
         }
         RunResult result;
         try {
-            result = SingleRun(options, lie::scheme(options.integrators[k]), directory[k]).execute();
+            result = SingleRun(options, *schemes[k], directory[k]).execute();
         } catch (const RunHasEnded& ended) {
             if (directory.size() == 1) throw;
             if (!options.quiet) io::warning(ended.what() + std::string("; skipped"));

@@ -72,14 +72,6 @@ double reciprocal_condition(const dae::Model& model, const lie::State& x)
     }
 }
 
-/// The scheme with this name, or one with the default properties
-const lie::Scheme& scheme_or_default(const std::string& name)
-{
-    static const lie::Scheme other;
-    const lie::Scheme* found = io::Registry<lie::Scheme>::find(name);
-    return found != nullptr ? *found : other;
-}
-
 /// A DP1 driver whose vectors become parallel, or whose value leaves its range, between the times t and t +
 /// h; empty if there is none. Drivers with a complement pass such a point.
 std::string singular_driver(const dae::Model& model, double t, double h)
@@ -118,7 +110,7 @@ std::string step_text(double h)
 }
 
 Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
-                   long number, double h, const std::string& scheme)
+                   long number, double h, const lie::Scheme& scheme)
 {
     std::string how = failure.what();
     if (const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure))
@@ -127,7 +119,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     Diagnosis d;
     const bool at_node = dynamic_cast<const lie::NodeFailure*>(&failure) != nullptr;
     d.what = fmt::format("t={:.{}f} step {} ({}, h={}): {}", node.t + (at_node ? 0 : h), decimals,
-                         number + (at_node ? 0 : 1), scheme, step_text(h), how);
+                         number + (at_node ? 0 : 1), scheme.name, step_text(h), how);
     if (at_node || failure.status.starts_with("contact_"))
         return d;  // the message of the failure is complete
 
@@ -151,9 +143,10 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
                                 newton != nullptr ? newton->residual : worst.value, rcond,
                                 rcond < 1e-12 ? ": redundant or singular constraints?" : "");
     }
+    if (scheme.adaptive) return d;
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
-            if (const double limit = force->stable_step_in(scheme_or_default(scheme), node); h > limit)
+            if (const double limit = force->stable_step_in(scheme, node); h > limit)
                 d.detail =
                     fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
                                 limit, force->label());

@@ -14,6 +14,7 @@ class NumericalFailure;
 }
 
 namespace hilda::lie {
+struct Scheme;
 class Integrator;
 struct State;
 }  // namespace hilda::lie
@@ -31,7 +32,7 @@ struct Diagnosis {
 /// Diagnosis of the step of size h [s] that starts at `node`, the node with this number. Evaluates the model
 /// at the node and at the node shifted in time by h.
 Diagnosis diagnose(const io::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
-                   long number, double h, const std::string& scheme);
+                   long number, double h, const lie::Scheme& scheme);
 
 /// Warning of a run with adaptive steps whose constraints nearly lost rank; empty if they did not
 std::string rank_warning(const lie::Integrator& integrator);

@@ -7,6 +7,7 @@
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "io/message.hpp"
+#include "io/option_values.hpp"
 #include "io/program.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
@@ -30,12 +31,15 @@ namespace hilda::studies {
 
 namespace {
 
+constexpr const char* interval_option = "--interval";
+
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// Time grid of a run. For an adaptive scheme each node is an output row.
-lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive)
+/// Time grid of a run. For an adaptive scheme each node is an output row. `earlier` is the interval of the
+/// rows of a run that is continued with an adaptive scheme.
+lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive, std::optional<double> earlier)
 {
-    const double interval = options.interval.value_or(end / 1000);
+    const double interval = options.interval.value_or(earlier.value_or(end / 1000));
     try {
         if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : default_step);
         return lie::TimeGrid::over(end, options.step.value_or(default_step), interval);
@@ -133,8 +137,10 @@ void SingleRun::read()
     }
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
-    grid = grid_of(options, result.end, scheme.adaptive);
-    if (from && !options.interval) grid.interval = from->interval;
+    std::optional<double> earlier;  // interval
+    if (from && scheme.adaptive) earlier = io::number_in<double>(from->settings[interval_option]);
+    grid = grid_of(options, result.end, scheme.adaptive, earlier);
+    if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
     const double reached = static_cast<double>(grid.steps) * grid.h,
                  spacing = static_cast<double>(grid.interval) * grid.h;
     if (reached > result.end * (1 + 1e-9))
@@ -184,11 +190,16 @@ RunSettings SingleRun::settings_of_run()
         all.erase(format);
     all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
     all["--integrator"] = scheme.name;
-    all["--step"] = io::shortest(grid.h);
-    all["--interval"] = io::shortest(result.interval);
+    if (scheme.adaptive) {
+        all["--rtol"] = io::shortest(result.rtol);
+        if (result.atol != result.rtol) all["--atol"] = io::shortest(result.atol);
+    } else {
+        all["--step"] = io::shortest(grid.h);
+    }
+    all[interval_option] = io::shortest(result.interval);
     // Rows are counted in steps: with another step the rows of the interrupted run would have another
     // interval.
-    if (from && !options.interval) all["--interval"] = from->settings["--interval"];
+    if (from && !options.interval) all[interval_option] = from->settings[interval_option];
     all["--tolerance"] = io::shortest(s.tolerance);
     all["--linear-solver"] = solvers[static_cast<int>(s.linear_solver)];
     all["--rho-infinity"] = io::shortest(s.rho_infinity);
@@ -207,8 +218,8 @@ void SingleRun::check_step(bool resumed) const
             if (force->internal_states() > 0)
                 throw io::UsageError(
                     fmt::format("run: {} chooses its own steps; {} has internal state variables and "
-                                "needs a fixed-step scheme",
-                                scheme.name, force->label()));
+                                "needs a fixed-step scheme{}",
+                                scheme.name, force->label(), scheme.resumes ? " or --step" : ""));
         return;
     }
     const dae::Model::StableStep stable = model.stable_step(description.x, scheme);
@@ -361,15 +372,15 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         count(march, recorder);  // before the additional step of finish(), which is not a step of the run
         line.clear();
         if (march.number() == grid.steps) {
-            if (!scheme.adaptive) final_checkpoint = checkpoint(march, recorder);
+            if (scheme.resumes) final_checkpoint = checkpoint(march, recorder);
             if (options.coupling != nullptr) options.coupling->before_finish();
             return march.finish(observers);
         }
         result.status = "interrupted";
         result.exit_code = io::exit_code::signal + io::Interrupt::caught();
-        if (!scheme.adaptive) save_checkpoint(march, recorder);
+        if (scheme.resumes) save_checkpoint(march, recorder);
         if (!options.quiet)
-            io::message(scheme.adaptive ? "hilda: interrupted\n"
+            io::message(!scheme.resumes ? "hilda: interrupted\n"
                                         : "hilda: interrupted; --resume continues from the checkpoint in " +
                                               directory + '\n');
     } catch (const lie::NumericalFailure& failure) {
@@ -412,8 +423,7 @@ void SingleRun::count(const lie::March& march, const Recorder& recorder)
 
 void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
 {
-    const Diagnosis d =
-        diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme.name);
+    const Diagnosis d = diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme);
     result.status = failure.status;
     result.exit_code = io::exit_code::numerical_failure;
     result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
@@ -429,7 +439,7 @@ void SingleRun::finish(const Recorder& recorder)
     const bool ok = result.status == "ok";
     // In this order, so that a run that is killed here can be resumed.
     if (ok && !final_checkpoint.empty()) io::CheckpointFiles(directory).save_final(final_checkpoint);
-    if (result.status == "interrupted" && !scheme.adaptive) result.files.emplace_back("checkpoint");
+    if (result.status == "interrupted" && scheme.resumes) result.files.emplace_back("checkpoint");
     if (options.plot)
         if (const auto figures = plot("trajectory.py", directory, {.formats = options.figure_formats}))
             result.files.insert(result.files.end(), figures->begin(), figures->end());

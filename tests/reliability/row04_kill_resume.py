@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 4: runs that are killed at random times and resumed write the same tables as an uninterrupted run.
 
-5 models x 5 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (100
-kills); 20 for a release (500 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the
+5 models x 7 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (140
+kills); 20 for a release (700 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the
 final tables are equal.
 """
 import random
@@ -11,7 +11,8 @@ import random
 import matrix
 
 MODELS = {"double_pendulum": 4, "four_link": 4, "slider_crank": 3, "n_pendulum_2_spin": 3, "andrews_squeezer": 0.03}
-INTEGRATORS = {"rA-half-1": 1e-3, "rA-half-1-momentum": 1e-3, "rA-full-1": 1e-3, "rA-rattle": 1e-3, "rA-rkmk-4": 1e-3}
+INTEGRATORS = {"rA-half-1": 1e-3, "rA-half-1-momentum": 1e-3, "rA-full-1": 1e-3, "rA-rattle": 1e-3, "rA-rkmk-4": 1e-3,
+               "rA-dp-5": "adaptive", "rA-dop853": "adaptive"}
 
 
 def options(parser):
@@ -25,9 +26,12 @@ def main():
     with matrix.scratch() as folder:
         for model, end in MODELS.items():
             for integrator, step in INTEGRATORS.items():
-                step = 1e-5 if model == "andrews_squeezer" else step
-                command = [row.hilda, "run", model, "--integrator", integrator, "--step", step, "--end", end,
-                           "--interval", 5 * step, "--quiet"]
+                steps = ["--rtol", 1e-10] if step == "adaptive" else ["--step", step]
+                if model == "andrews_squeezer" and step != "adaptive":
+                    steps = ["--step", 1e-5]
+                interval = 5e-5 if model == "andrews_squeezer" else 5e-3
+                command = [row.hilda, "run", model, "--integrator", integrator, *steps, "--end", end,
+                           "--interval", interval, "--quiet"]
                 begin = matrix.now()
                 whole = row.run(command + ["--output", "whole", "--force"], cwd=folder, limit=600)
                 taken = matrix.now() - begin

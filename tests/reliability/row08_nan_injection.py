@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Row 8: values that are not finite or overflow, at 12 points x 5 integrators, end the run with exit code 4 (3 where
+"""Row 8: values that are not finite or overflow, at 12 points x 7 integrators, end the run with exit code 4 (3 where
 the reader sees them), with the name of the entity, and no table has a value that is not finite."""
 import json
 
 import matrix
 import model as models
 
-INTEGRATORS = ("rA-half-1", "rA-half-1-momentum", "rA-full-1", "rA-rattle", "rA-rkmk-4")
+INTEGRATORS = ("rA-half-1", "rA-half-1-momentum", "rA-full-1", "rA-rattle", "rA-rkmk-4", "rA-dp-5", "rA-dop853")
 STEP = 5e-4  # below the stability limit of the contact of the model, 9.9e-4 s for schemes that extrapolate velocities
 
 

@@ -87,7 +87,8 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, StudyTex
 
 void work_precision(StudyContext& s)
 {
-    const Schemes schemes = s.schemes();
+    Schemes schemes = s.schemes();
+    for (const lie::Scheme*& scheme : schemes) scheme = &scheme->with_adaptive_steps();
     const std::vector<double> steps = s.steps({1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
     const std::vector<double> rtols =
         s.options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}

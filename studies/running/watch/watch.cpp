@@ -70,7 +70,7 @@ void Watch::check_stability(int k, const lie::State& x)
 {
     if (values.unstable.place >= 0 || scheme.adaptive) return;
     const auto number = static_cast<size_t>(k);
-    if (model.forces()[number]->is_stable(x, grid.h, scheme.loads)) return;
+    if (model.forces()[number]->is_stable(x, 2 / scheme.stability * grid.h, scheme.loads)) return;
     values.unstable.include(1, x.t, number);
     if (action == Action::strict || (action == Action::stop && values.ignore_stability == 0))
         stop("unstable_step", stability_finding().text);

@@ -310,6 +310,31 @@ TEST_CASE("a step in which a rotation cannot be counted is refused by every sche
     }
 }
 
+TEST_CASE("adaptive steps count the revolutions between two nodes", "[dae][forces][adaptive]")
+{
+    // a disk on a torsion spring, k/J = 1/4: the rate is 100 rad/s cos(t/2), 16 revolutions in a second
+    Model model;
+    State x;
+    x.body.resize(1);
+    x.body[0].omega_bar = {0, 0, 100};
+    model.add({.name = "disk", .m = 1, .J_bar = Vec3(1, 1, 2).asDiagonal()});
+    model.load(TorsionSpring(ground, Vec3::UnitZ(), 0, Vec3::UnitZ(), 0.5, 0, 0, x));
+    start(model, x);
+    for (const lie::Scheme& scheme : lie::schemes()) {
+        if (!scheme.adaptive_form) continue;
+        const auto integrator = scheme.adaptive_form->make(model, {.rtol = 1e-10});
+        lie::March march(x, *integrator, 1);
+        for (int n = 1; n <= 10; ++n) {
+            march.advance({});
+            double value[3];
+            model.forces()[0]->values(march.node(), value);
+            INFO(scheme.name << " at " << n << " s");
+            CHECK(value[0] == Approx(200 * std::sin(n / 2.)).margin(1e-6));
+            CHECK(value[1] == Approx(100 * std::cos(n / 2.)).margin(1e-6));
+        }
+    }
+}
+
 TEST_CASE("a torsion spring rejects axes that are zero or not parallel", "[dae][forces]")
 {
     State x;

@@ -316,14 +316,14 @@ TEST_CASE("a bead on a cycloid converges to the closed form with the declared or
     for (const lie::Scheme& s : lie::schemes()) {
         if (!s.algebraic) continue;
         ++schemes;
-        const double h = s.order >= 8 ? 0.1 : s.order > 2 ? 2e-2 : 1e-3;
+        const double h = s.order > 5 ? 0.08 : s.order > 2 ? 2e-2 : 1e-3;
         const Errors coarse = errors(s, bead, h), fine = errors(s, bead, h / 2);
         const double of_motion = std::log2(coarse.motion / fine.motion),
                      of_lambda = std::log2(coarse.lambda / fine.lambda);
         INFO(s.name << " declares " << s.order << " and " << s.order_lambda << " for lambda, shows "
                     << of_motion << " and " << of_lambda << "; errors " << fine.motion << " and "
                     << fine.lambda << ", residual " << fine.residual);
-        CHECK(of_motion == Approx(s.order).margin(0.1));
+        CHECK(of_motion == Approx(s.order).margin(s.order > 5 ? 0.2 : 0.1));
         CHECK(of_lambda == Approx(s.order_lambda).margin(0.2));
         CHECK(fine.residual < 1e-13);
         CHECK(fine.bound < 1e-11 * 7);  // Φ_αᵀ λ = 0; λ is about 7 N

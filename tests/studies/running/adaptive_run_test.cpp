@@ -99,3 +99,81 @@ TEST_CASE("an adaptive run that passes a configuration of lower rank warns once"
         CHECK(warnings("double_pendulum", {"--integrator", scheme, "--end", "1"}).empty());
     }
 }
+
+TEST_CASE("a scheme with both forms has adaptive steps without --step", "[studies][run]")
+{
+    const Scratch in;
+    for (const std::string name : {"rA-dp-5", "rA-dop853"}) {
+        CAPTURE(name);
+        const std::vector<std::string> run = {
+            "run", "double_pendulum_moving", "--end", "0.5", "--integrator", name, "--force", "--output",
+            name};
+        CHECK(call(in, with(run, {"--rtol", "1e-8", "--interval", "0.1"})).code == 0);
+        auto summary = nlohmann::json::parse(read(in / (name + "/summary.json")));
+        CHECK(summary["integrator"]["rtol"] == 1e-8);
+        CHECK_FALSE(summary["integrator"].contains("step"));
+        CHECK(summary["counters"]["steps"] < 100);
+        const auto rows = csv(in / (name + "/trajectory.csv"));
+        REQUIRE(rows.size() == 6);
+
+        CHECK(call(in, with(run, {"--step", "5e-3", "--interval", "0.1"})).code == 0);
+        summary = nlohmann::json::parse(read(in / (name + "/summary.json")));
+        CHECK(summary["integrator"]["step"] == 5e-3);
+        CHECK(summary["counters"]["steps"] == 100);
+        const auto fixed = csv(in / (name + "/trajectory.csv"));
+        for (size_t k = 0; k < rows.size(); ++k)
+            for (const auto& [column, value] : rows[k])
+                CHECK(number(rows[k], column) == Approx(number(fixed[k], column)).margin(1e-5).epsilon(1e-5));
+
+        const auto refused = [&](const std::vector<std::string>& more, const std::string& message) {
+            check_refused(in, with(run, more), 2, message);
+        };
+        refused({"--step", "1e-3", "--rtol", "1e-6"},
+                "run: " + name +
+                    " has a fixed step with --step, and adaptive steps with --rtol; give one of them");
+        refused({"--rtol", "0.2"}, "--rtol: must be a number from 1e-14");
+        refused({"--atol", "9e-15"}, "--atol: must be a number from 1e-14");
+        refused({"--interval", "0"}, "chooses its own steps; --interval");
+        refused({"--error"}, "chooses its own steps; --error");
+        check_refused(in, {"run", "double_pendulum", "--integrator", "rA-rkmk-4", "--rtol", "1e-6"}, 2,
+                      "run: no selected integrator uses --rtol; it is for ida-rp, ida-rp-baumgarte, "
+                      "ida-rp-index1, rA-dop853, rA-dp-5");
+    }
+}
+
+TEST_CASE("an adaptive run in two parts has the bytes of one run", "[studies][run][resume]")
+{
+    const Scratch in;
+    for (const std::string name : {"rA-dp-5", "rA-dop853"})
+        for (const std::string model : {"n_pendulum_2_spin", "slider_crank"}) {
+            const std::vector<std::string> run = {
+                "run",   model,     "--integrator",    name, "--rtol", "1e-7", "--interval",
+                "0.013", "--quiet", "--linear-solver", "klu"};
+            CAPTURE(name, model);
+            CHECK(call(in, with(run, {"--end", "1.3", "--output", name + model + "1"})).code == 0);
+            CHECK(call(in, with(run, {"--end", "0.39", "--output", name + model + "2"})).code == 0);
+            CHECK(call(in, with(run, {"--end", "1.3", "--output", name + model + "2", "--resume"})).code ==
+                  0);
+            CHECK(read(in / (name + model + "1/trajectory.csv")) ==
+                  read(in / (name + model + "2/trajectory.csv")));
+            check_refused(
+                in,
+                {"run", model, "--integrator", name, "--rtol", "1e-6", "--interval", "0.013", "--end", "2.6",
+                 "--linear-solver", "klu", "--output", name + model + "2", "--resume"},
+                2, "it has --rtol 1e-07; this run has --rtol 1e-06");
+        }
+}
+
+TEST_CASE("adaptive steps of an explicit scheme refuse contacts and loads with a history by name",
+          "[studies][run]")
+{
+    const Scratch in;
+    for (const std::string model : {"bouncing_ellipsoid", "ball_in_bowl", "rolling_ball"}) {
+        check_refused(
+            in, {"run", model, "--integrator", "rA-dp-5", "--rtol", "1e-6"}, 3,
+            "integrator rA-dp-5: adaptive steps do not support contacts; use a fixed step, got contact '");
+        CHECK(call(in, {"run", model, "--integrator", "rA-dp-5", "--step", "1e-5", "--end", "1e-4", "--force",
+                        "--output", "a"})
+                  .code == 0);
+    }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Explicit Runge-Kutta methods on the Lie group with error control and dense output.
+
+#pragma once
+
+#include "lie/schemes.hpp"
+#include "lie/steps/runge_kutta_step.hpp"
+#include "lie/steps/step_control.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace hilda::lie {
+
+/// Internal steps of a tableau, chosen from rtol and atol. step() evaluates the continuous extension at its
+/// end, so that the output instants do not affect the internal steps.
+///
+/// The last internal step contains the time of the node or ends there. Its stages, its end and the controller
+/// are in State::history of the node: a run continues from there with the same digits. The poses and
+/// velocities of a node inside the internal step are projected onto the constraints; accelerations and
+/// multipliers are those of the saddle system at the node.
+///
+/// No body turns by more than 2 rad in an internal step at its initial angular velocity. A step is repeated
+/// with a smaller length if its error estimate exceeds the tolerance, or if it fails. The pivots of the
+/// linear solver are then those of its first attempt, so that the rejected attempt has no effect on the
+/// digits.
+class AdaptiveStep final : public RungeKuttaStep {
+public:
+    /// Throws InvalidInput if rtol or atol is not in [1e-14, 0.1].
+    AdaptiveStep(const System& model, const Settings& settings, const Tableau& tableau);
+
+    /// Throws NumericalFailure "step_too_small" if the error estimate of a step of the length of rounding
+    /// errors exceeds the tolerance, or if 1000 internal steps cover less than h/1e6. A failure of such a
+    /// step is passed on, with its length. Throws InvalidInput if loads depend on a history
+    /// (System::internal_states_are_history): it is constant during a step.
+    int step(State& x, double h) override;
+    bool chooses_internal_steps() const override { return true; }
+
+private:
+    void start(const State& x);
+    int internal_step(double interval);
+    /// One attempt from x_n to `end`. Sets the norm of its error estimate; infinite if it failed.
+    int attempt(double h, double& norm);
+    void set_node(State& x, double t);
+    /// Largest length of a step from x_n [s]
+    double limit() const;
+    [[noreturn]] void fail(double h, double norm) const;
+    /// Calls block(numbers, count) for the numbers that continue the steps.
+    template <class Block>
+    void transfer(const Block& block);
+    double rms(const Eigen::VectorXd& of) const;
+
+    const double rtol, atol;
+    State end;          ///< of the last internal step, which starts at x_n
+    double length = 0;  ///< of that step [s]; 0 at a start
+    bool has_all_stages = false;
+    StepControl control;
+    State node;  ///< workspace: a state inside the step
+    Eigen::VectorXd tolerance, change;
+    State pivots_before;         ///< the pivots at the beginning of the step
+    long factorizations = 0;     ///< at the time of pivots_before
+    std::string status, reason;  ///< of the last attempt if it failed; otherwise empty
+};
+
+/// Adds the scheme of a tableau to the list: RungeKuttaStep with a fixed step, and AdaptiveStep as its
+/// adaptive form.
+template <const Tableau& (*tableau)()>
+bool register_runge_kutta(Scheme scheme)
+{
+    Scheme adaptive = scheme;
+    adaptive.adaptive = true;
+    adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
+        return std::make_unique<AdaptiveStep>(system, settings, tableau());
+    };
+    scheme.adaptive_form = std::make_shared<const Scheme>(std::move(adaptive));
+    scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
+        return std::make_unique<RungeKuttaStep>(system, settings, tableau());
+    };
+    return io::Registry<Scheme>::add(std::move(scheme));
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Explicit Runge-Kutta methods on the Lie group, by their tableau.
+
+#pragma once
+
+#include "lie/steps/explicit_step.hpp"
+#include "lie/steps/tableau.hpp"
+
+namespace hilda::lie {
+
+/// One step of a tableau, with projection. As an integrator it takes steps of the given length.
+class RungeKuttaStep : public ExplicitStep {
+public:
+    RungeKuttaStep(const System& model, const Settings& settings, const Tableau& tableau);
+
+    int step(State& x, double h) override;
+
+protected:
+    /// Sets x to the end of a step of the length h from x_n: stages, projection, accelerations, and the slope
+    /// there. Returns the number of Newton steps of the projection. x has the discrete state and the internal
+    /// states of x_n.
+    int advance(State& x, double h);
+
+    /// The norms of the error estimates of the last step, combined to one number: h |Σ e_i k_i|. The
+    /// components are divided by `scale`.
+    double error(double h, const Eigen::VectorXd& scale);
+
+    /// Sets x to the state at x_n.t + s h of the last step by the continuous extension, projected.
+    void interpolate(State& x, double s, double h);
+    /// Computes the stages that only interpolate() needs. x is workspace.
+    void add_stages(State& x, double h);
+
+    const Tableau& tableau;
+    Eigen::MatrixXd slope;  ///< column i: d/dt (r, θ, ṙ, ω̄) of stage i
+
+private:
+    void set_stage(int i, State& x, double h);
+    /// change = h Σ weights_i slope_i
+    void combine(double h, const std::vector<double>& weights);
+
+    Eigen::VectorXd change;
+    std::vector<double> weights;
+};
+
+}  // namespace hilda::lie

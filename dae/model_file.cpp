@@ -61,13 +61,14 @@ private:
     void version(ObjectReader& o)
     {
         if (!o.has("hilda_model")) {
+            o.refuse_other_kinds("hilda_model");
             // The published model files of the dissertation have no version.
             o.find("hilda_model");
             out.warnings.push_back(o.place() +
                                    ": the key 'hilda_model' is missing; the file is read as version 1");
             o.record("hilda_model", 1.0);
-        } else if (const int v = o.integer("hilda_model"); v != 1) {
-            o.fail("hilda_model", "the version of the format must be 1, got " + std::to_string(v));
+        } else {
+            o.version("hilda_model");
         }
     }
 

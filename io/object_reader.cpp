@@ -269,6 +269,29 @@ void ObjectReader::fail(std::string_view key, std::size_t element, const std::st
     source.fail(m->value.list()->at(element), pointer_to(pointer(key), std::to_string(element)), what);
 }
 
+void ObjectReader::version(std::string_view key)
+{
+    refuse_other_kinds(key);
+    if (const int version = integer(key); version != 1)
+        fail(key, "the version of the format must be 1, got " + std::to_string(version));
+}
+
+void ObjectReader::refuse_other_kinds(std::string_view key) const
+{
+    struct Kind {
+        std::string_view key, what, command;
+    };
+    static constexpr Kind kinds[] = {{"hilda_model", "a model", "hilda run"},
+                                     {"hilda_case", "a case of grains", "hilda granular"},
+                                     {"hilda_cosim", "a co-simulation", "hilda cosim"}};
+    if (has(key)) return;
+    for (const Kind& other : kinds)
+        for (const Kind& expected : kinds)
+            if (has(other.key) && expected.key == key)
+                fail(other.key, "the file is " + std::string(other.what) + ", not " +
+                                    std::string(expected.what) + "; use " + std::string(other.command));
+}
+
 const Json* ObjectReader::lookup(std::string_view key, bool required)
 {
     if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);

@@ -62,6 +62,11 @@ public:
     /// Records the value of a key for the canonical form. A value recorded earlier is replaced.
     void record(std::string_view key, Json as);
 
+    /// Reads the version of a file, which must be 1, from the key that names the kind of file. Throws
+    /// PlacedError for a file of another kind; the message has the command for such files.
+    void version(std::string_view key);
+    /// The second half of version(): throws PlacedError for a file of another kind.
+    void refuse_other_kinds(std::string_view key) const;
     /// Accepts the key "$schema" of the root object, a string. Editors find the schema by it; it has no other
     /// effect.
     void allow_schema();

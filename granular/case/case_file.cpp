@@ -65,8 +65,7 @@ public:
     void read()
     {
         ObjectReader o(out.source, out.source.root, "");
-        if (const long version = o.count("hilda_case"); version != 1)
-            o.fail("hilda_case", "the version of the format must be 1, got " + std::to_string(version));
+        o.version("hilda_case");
         o.allow_schema();
         out.name = o.text("name", "case");
         options(o);

@@ -34,8 +34,7 @@ CosimFile read_cosim(const std::string& path, const std::vector<std::string>& se
     for (const std::string& change : set) source.set(change, "--set");
     CosimFile f{.source = source};
     io::ObjectReader o(f.source, f.source.root, "");
-    if (const long version = o.count("hilda_cosim"); version != 1)
-        o.fail("hilda_cosim", "the version of the format must be 1, got " + std::to_string(version));
+    o.version("hilda_cosim");
     o.allow_schema();
     f.name = o.name("name", std::filesystem::path(path).stem().string());
     f.model = o.file("model");

@@ -105,3 +105,21 @@ TEST_CASE("a reader refuses integers, texts and formulas that are none", "[io][o
     CHECK(o.formula("x", {}, {"t"}) == "2");
     CHECK(o.formula("y", "t", {"t"}) == "t");
 }
+
+TEST_CASE("a file of another kind is refused with the command for it", "[io][object_reader]")
+{
+    const auto model = [](io::ObjectReader& o) { o.version("hilda_model"); };
+    const auto cosim = [](io::ObjectReader& o) { o.version("hilda_cosim"); };
+    CHECK(refusal(R"({"hilda_model": 1})", model).empty());
+    CHECK(refusal(R"({"hilda_model": 2})", model) ==
+          "f:1:17 (/hilda_model): the version of the format must be 1, got 2");
+    CHECK(refusal(R"({"hilda_case": 1})", model) ==
+          "f:1:16 (/hilda_case): the file is a case of grains, not a model; use hilda granular");
+    CHECK(refusal(R"({"hilda_cosim": 1})", model) ==
+          "f:1:17 (/hilda_cosim): the file is a co-simulation, not a model; use hilda cosim");
+    CHECK(refusal(R"({"hilda_model": 1})", cosim) ==
+          "f:1:17 (/hilda_model): the file is a model, not a co-simulation; use hilda run");
+    CHECK(refusal("{}", model) == "f:1:1 (/): missing key 'hilda_model'");
+    const io::JsonSource source("{}", "f");
+    io::ObjectReader(source, source.root, "").refuse_other_kinds("hilda_model");
+}

@@ -18,13 +18,10 @@ public:
 
     int step(State& x, double h) override
     {
-        start = x;
-        Attempt attempt(x, start);
-        return done(attempt, advance(x, h, start.t + h));
+        x_n = x;
+        Attempt attempt(x, x_n);
+        return done(attempt, advance(x, h, x_n.t + h));
     }
-
-private:
-    State start;
 };
 
 const bool registered =

@@ -39,6 +39,7 @@ public:
         for (std::size_t k = 0; k < gamma.size(); ++k) {
             sum += gamma[k];
             const double end = k + 1 < gamma.size() ? start.t + sum * h : start.t + h;
+            x_n = x;
             iterations += advance(x, gamma[k] * h, end);
         }
         return done(attempt, iterations);

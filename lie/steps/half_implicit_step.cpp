@@ -17,8 +17,8 @@ HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings
 HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings, std::string name, double w,
                                    double q, ImplicitSprings implicit_springs)
     : SaddleStep(model, settings, implicit_springs.rows()), name(std::move(name)), w(w), q(q),
-      springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), Phi(model.rows()),
-      lambda(K.rows().rows()), z_newton(K.size()), anderson(K.size(), 6 * bodies),
+      springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), z_before(K.size()),
+      Phi(model.rows()), lambda(K.rows().rows()), anderson(K.size(), 6 * bodies),
       accelerates(model.pattern().algebraic.empty() && model.pattern().regularised.empty())
 {}
 
@@ -113,12 +113,13 @@ int HalfImplicitStep::newton(State& x)
         place(x);
         place_algebraic(x, 1 / q);
         if (k > patience && (!accelerates || (k - patience) % accelerated == 1)) refresh(x), anderson.start();
-        z_newton = z;
+        const bool is_slow = k > patience && accelerates;
+        if (is_slow) z_before = z;
         correct(refreshed ? 1 : k, x);
         if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w)) return k;
-        if (k <= patience || !accelerates) continue;
-        anderson.accelerate(z_newton, e);
-        z = z_newton + e;
+        if (!is_slow) continue;
+        anderson.accelerate(z_before, e);
+        z = z_before + e;
     }
     no_convergence(name, correction, x);
 }

@@ -83,7 +83,6 @@ private:
     Rows C_n;
     BoundedRows friction;
     Eigen::VectorXd z_start, z_before, Phi, lambda;
-    Eigen::VectorXd z_newton;               ///< z before a correction
     static constexpr int accelerated = 10;  ///< accelerated corrections before K is refreshed again
     Anderson anderson;
     /// Whether slow corrections are accelerated. With algebraic variables or friction rows, whose scale

@@ -28,7 +28,6 @@ Statistics RattleStep::statistics() const
 
 int RattleStep::advance(State& x, double h, double t_end)
 {
-    x_n = x;
     assemble_at_start();
     set_known_part(h);
     predict(h, 0.5 * h * h, 0.5 * h * h);  // constant accelerations, and the multipliers of t_n

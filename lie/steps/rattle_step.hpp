@@ -40,8 +40,8 @@ public:
     Statistics statistics() const override;
 
 protected:
-    /// Advances x by a step h, which may be negative, to the time t_end. Returns the number of Newton
-    /// iterations. If NumericalFailure is thrown, x is undefined.
+    /// Advances x from x_n, which it is equal to, by a step h, which may be negative, to the time t_end.
+    /// Returns the number of Newton iterations. If NumericalFailure is thrown, x is undefined.
     int advance(State& x, double h, double t_end);
 
     const std::string name;

@@ -132,23 +132,22 @@ void require_same_arguments(const Communicator& all, int argc, char** argv)
 {
     std::string text = std::filesystem::current_path().string();
     for (int k = 1; k < argc; ++k) text += '\n' + std::string(argv[k]);
-    struct Sums {
-        std::uint64_t sum, largest, least;
-        Sums& operator+=(const Sums& o)
+    struct Range {
+        std::uint64_t least, largest;
+        Range& operator+=(const Range& o)
         {
-            sum += o.sum, largest = std::max(largest, o.largest), least = std::min(least, o.least);
+            least = std::min(least, o.least), largest = std::max(largest, o.largest);
             return *this;
         }
     };
     const std::uint64_t own = io::checksum(text.data(), text.size());
-    const Sums sums = all.reduced_for_all(Sums{own, own, own});
-    if (sums.largest == sums.least) return;
+    const Range of_all = all.reduced_for_all(Range{own, own});
+    if (of_all.largest == of_all.least) return;
     MPI_Finalize();
     if (!all.is_first()) std::_Exit(io::exit_code::wrong_command_line);  // one message is enough
     throw io::UsageError(
         "mpirun: the processes have different arguments or folders; they compute one case together, and runs "
-        "of "
-        "their own are started without mpirun (or with --threads N on one machine)");
+        "of their own are started without mpirun");
 }
 
 std::unique_ptr<Processes> start(int& argc, char**& argv)

@@ -84,7 +84,6 @@ struct Outside {
 struct RankEngine::Ghosts {
     std::vector<int> to;               ///< process, ascending
     std::vector<std::uint32_t> which;  ///< places in the list of the particles
-    std::vector<GhostRecord> records;
 };
 
 /// Work of a particle with its row of pairs; the numbers are those of SweepPlan.
@@ -125,9 +124,8 @@ void RankEngine::divide_again(const Domain& domain)
     if (steps < (is_measured ? later_steps : first_steps) || own.pairs.start.size() == 0) return;
     all.imbalance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
     const double rate = work > 0 ? busy / work : 0;
-    const double imbalance = all.imbalance.measured;
     busy = work = 0, steps = 0, is_measured = true;
-    if (imbalance <= most) return;
+    if (all.imbalance.measured <= most) return;
 
     const CellGrid& g = domain.grid;
     std::vector<BlockWork> blocks;

@@ -86,11 +86,11 @@ private:
     std::vector<int> owner;
     par::Array<par::Cpu, std::uint32_t> keys, order;
 
-    float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
-    double busy = 0, work = 0;  ///< CPU time of the steps since the last division [s], and their work
-    long steps = 0;             ///< since then
-    long steps_since_division = 0;
-    bool is_measured = false;  ///< whether they have been compared with those of the other processes
+    float largest_overlap = 0;      ///< of all processes since take_largest_overlap(), in the first one
+    double busy = 0, work = 0;      ///< CPU time of the steps since the last measurement [s], and their work
+    long steps = 0;                 ///< since the last measurement of the imbalance
+    long steps_since_division = 0;  ///< of the domain
+    bool is_measured = false;       ///< whether the imbalance has been measured
 };
 
 }  // namespace hilda::granular

@@ -170,6 +170,14 @@ def along(axes, x, y, place, of, dash="-", **points):
     axes.plot(x, y, dash, lw=1.2, ms=5, markevery=(place * stride // of, stride), **points)
 
 
+def step_styles(steps):
+    """Text for the title of a figure whose line styles show the steps, and their entries in the legend"""
+    if len(steps) == 1:
+        return f"h = {float(steps[0]):g} s", []
+    return "line style: step h", [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"h = {float(h):g} s")
+                                  for k, h in enumerate(steps)]
+
+
 def legend(figure, schemes, markers=True, more=(), columns=8):
     """Draws one legend below the figure and returns its height as a fraction of the figure height. It lists the schemes
     that the figure shows."""

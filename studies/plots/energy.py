@@ -5,8 +5,8 @@
 
     energy.py DIR       reads DIR/study.csv and DIR/energy.csv, writes DIR/energy-PROBLEM.png
 """
-from drawing import (DASHES, Line2D, along, axis, by_scheme, directory, distinct, for_each, legend, number, numbers, plt, record,
-                     save, shown, where)
+from drawing import (DASHES, along, axis, by_scheme, directory, distinct, for_each, legend, number, numbers, plt, record, save,
+                     shown, step_styles, where)
 
 
 def draw(folder, problem, runs, rows):
@@ -28,10 +28,8 @@ def draw(folder, problem, runs, rows):
     for axes, label in ((plain, f"${symbol}$ [J]"), (log, f"$|{symbol}|$ [J]")):
         axis(axes, "$t$ [s]", label)
     kinetic = max((number(run["max_kinetic"]) for run in runs if run["status"] == "ok"), default=float("nan"))
-    which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: step h"
+    which, more = step_styles(steps)
     figure.suptitle(f"{problem}: {'energy minus work of loads and drivers' if balance else 'change of the total energy'}, {which}; largest kinetic energy {kinetic:.4g} J", fontsize=11)
-    more = [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"h = {float(h):g} s")
-            for k, h in enumerate(steps)] if len(steps) > 1 else []
     save(figure, folder, f"energy-{problem}.png", legend(figure, schemes, more=more))
 
 

@@ -4,7 +4,7 @@
 
     long-time.py DIR       reads DIR/study.csv and DIR/decades.csv, writes DIR/long-time-PROBLEM.png
 """
-from drawing import DASHES, Line2D, axis, by_scheme, distinct, for_each, legend, numbers, plt, save, shown, where
+from drawing import DASHES, axis, by_scheme, distinct, for_each, legend, numbers, plt, save, shown, step_styles, where
 
 
 def draw(folder, problem, _, rows):
@@ -23,10 +23,8 @@ def draw(folder, problem, _, rows):
         axes.set_xscale("log")
         axes.set_yscale("log")
         axis(axes, "$t$ [s], end of the decade", label)
-    which = f"h = {float(steps[0]):g} s" if len(steps) == 1 else "line style: step h"
+    which, more = step_styles(steps)
     figure.suptitle(f"{problem}: energy, and angular momentum along gravity, by decade of time, {which}", fontsize=11)
-    more = [Line2D([], [], color="0.4", ls=DASHES[k % len(DASHES)], label=f"h = {float(h):g} s")
-            for k, h in enumerate(steps)] if len(steps) > 1 else []
     save(figure, folder, f"long-time-{problem}.png", legend(figure, schemes, more=more))
 
 

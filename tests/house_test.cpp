@@ -60,7 +60,7 @@ const std::map<std::string, std::set<std::string>> granular_folders = {
     {"cosim", {"case", "core", "running", "stages", "world"}},
     {"program",
      {"backend", "case", "core", "cosim", "distributed", "fields", "reading", "running", "stages",
-       "validations", "world"}},
+      "validations", "world"}},
     {"benchmarks", {"cosim", "mesh", "running", "world"}},
 };
 const std::pair<std::string, std::string> mutual_folders = {"backend", "core"};

@@ -23,7 +23,7 @@ std::vector<Maker>& makers()
 bool uses(const lie::Scheme& scheme, const std::string& option)
 {
     if (option == "--rtol" || option == "--atol") return scheme.adaptive;
-    if (option == "--max-iterations") return !scheme.adaptive;
+    if (option == "--max-iterations") return !scheme.adaptive || scheme.formulation == "rA";
     if (option == "--rho-infinity") return scheme.rho_infinity;
     if (option == "--reparametrise") return scheme.formulation == "reps";
     return true;

@@ -10,9 +10,9 @@ using namespace hilda::tests;
 TEST_CASE("the decades of the long-time study have the means and extremes of a run", "[studies][long-time]")
 {
     const Scratch in;
-    const Ended ended = call(in, {"study", "long-time", "--problem", "heavy_top", "--integrator",
-                                  "rA-rattle,rA-half-1-kick", "--steps", "1e-3", "--end", "2", "--tolerance", "1e-14",
-                                  "--no-plot"});
+    const Ended ended =
+        call(in, {"study", "long-time", "--problem", "heavy_top", "--integrator", "rA-rattle,rA-half-1-kick",
+                  "--steps", "1e-3", "--end", "2", "--tolerance", "1e-14", "--no-plot"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     const auto runs = csv(in / "out/long-time/study.csv");

@@ -27,8 +27,10 @@ void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
     // Normal equations, with the columns scaled to the length 1.
     SmallVector length(count), right(count);
     Small product(count, count);
-    for (int i = 0; i < count; ++i) length[i] = change_e.col(i).head(measured).norm();
-    if (!(length.minCoeff() > 0)) return;
+    for (int i = 0; i < count; ++i) {
+        length[i] = change_e.col(i).head(measured).norm();
+        if (!(length[i] > 0)) return;
+    }
     for (int i = 0; i < count; ++i) {
         right[i] = change_e.col(i).head(measured).dot(e.head(measured)) / length[i];
         for (int j = 0; j < count; ++j)

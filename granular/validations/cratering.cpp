@@ -20,6 +20,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace hilda::granular {
 
@@ -140,7 +141,7 @@ SettledBed settled_bed(double R, const ValidationOptions& options,
                        const std::function<void(double)>& progress)
 {
     SettledBed bed;
-    options.bed(
+    options.beds.bed(
         bed_case(R),
         [&] {
             Bed now(R, options.device);
@@ -210,14 +211,32 @@ std::vector<Impact> impacts(bool full)
 ValidationResult run(const ValidationOptions& options)
 {
     const std::vector<Impact> all = impacts(options.full);
-    std::map<double, SettledBed> beds;
-    for (const Impact& of : all) beds[of.R];
+    std::set<double> sizes;
+    for (const Impact& of : all) sizes.insert(of.R);
+    struct Part {
+        double surface = 0, density = 0;  ///< of the bed
+        Crater crater;
+    };
+    std::vector<Part> craters(all.size());
+    std::map<double, SettledBed> beds;  // by the radius of the grains
     double done = 0;
-    const auto parts = static_cast<double>(all.size() + 4 * beds.size());
-    for (auto& [R, bed] : beds) {
-        bed = settled_bed(R, options, [&](double share) { options.progress((done + 4 * share) / parts); });
-        options.progress((done += 4) / parts);
-    }
+    const auto parts = static_cast<double>(all.size() + 4 * sizes.size());
+    const auto compute = [&](long k) {
+        const Impact& of = all[static_cast<std::size_t>(k)];
+        const auto [bed, is_new] = beds.try_emplace(of.R);
+        if (is_new) {
+            bed->second = settled_bed(of.R, options,
+                                      [&](double share) { options.progress((done + 4 * share) / parts); });
+            options.progress((done += 4) / parts);
+        }
+        const SettledBed& b = bed->second;
+        craters[static_cast<std::size_t>(k)] = {b.surface, b.density, impact(of, b, options)};
+        options.progress(++done / parts);
+    };
+    options.kept.parts(static_cast<long>(all.size()), compute, [&](io::Archive& a, long k) {
+        auto& [surface, density, c] = craters[static_cast<std::size_t>(k)];
+        a.value(surface), a.value(density), a.value(c.depth), a.value(c.time), a.list(c.motion);
+    });
 
     ValidationTable table{
         "study",
@@ -227,17 +246,14 @@ ValidationResult run(const ValidationOptions& options)
     const double R = all.front().R;
     std::vector<double> densities, of_density, heights, of_height, slopes;
     std::map<double, double> slope_of_size;
-    for (const Impact& of : all) {
-        const SettledBed& bed = beds[of.R];
-        Crater c;
-        options.kept.part([&] { c = impact(of, bed, options); },
-                          [&](io::Archive& a) { a.value(c.depth), a.value(c.time), a.list(c.motion); });
-        options.progress(++done / parts);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const Impact& of = all[n];
+        const auto& [surface, density, c] = craters[n];
         const double H = of.height + c.depth,
-                     scale = std::sqrt(of.density / bed.density) * std::pow(diameter, 2. / 3) * std::cbrt(H),
+                     scale = std::sqrt(of.density / density) * std::pow(diameter, 2. / 3) * std::cbrt(H),
                      slope = c.depth * mu / scale;
         table.rows.push_back(
-            {of.R, of.density, of.height, c.depth, c.time, H, scale, slope, bed.density, bed.surface});
+            {of.R, of.density, of.height, c.depth, c.time, H, scale, slope, density, surface});
         for (const Crater::Sample& s : c.motion)
             motion.rows.push_back({of.R, of.density, of.height, s.t, s.depth, s.speed});
         if (of.density == 2200 && of.height == 0.1) slope_of_size[of.R] = slope;
@@ -269,7 +285,8 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered = io::Registry<Validation>::add(
     {.name = "cratering",
      .description = "depth of the crater of a ball over its density and height of fall (Fig. 7.14)",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

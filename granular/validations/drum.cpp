@@ -267,7 +267,7 @@ std::vector<Vec3> settled_grains(const Drum& d, const ValidationOptions& options
         for (const Particle& p : now.grains())
             if (p.r.z < 0) centres.push_back(p.r);
     };
-    options.bed(bed_case(d), settle, [&](io::Archive& a) { a.list(centres); });
+    options.beds.bed(bed_case(d), settle, [&](io::Archive& a) { a.list(centres); });
     return centres;
 }
 
@@ -403,24 +403,30 @@ ValidationResult run(const ValidationOptions& options)
                           all.size()));
     double done = 0;
     const double parts = static_cast<double>(all.size()) + 1;
-    const std::vector<Vec3> grains =
-        settled_grains(all.front().of.drum, options, [&](double share) { options.progress(share / parts); });
-    options.progress((done = 1) / parts);
-
+    std::vector<Vec3> grains;
+    std::vector<DrumFlow> flows(all.size());
+    const auto compute = [&](long k) {
+        if (grains.empty()) {
+            grains = settled_grains(all.front().of.drum, options,
+                                    [&](double share) { options.progress(share / parts); });
+            options.progress(++done / parts);
+        }
+        flows[static_cast<std::size_t>(k)] = flow(all[static_cast<std::size_t>(k)].of, grains, options);
+        options.progress(++done / parts);
+    };
+    options.kept.parts(static_cast<long>(all.size()), compute, [&](io::Archive& a, long k) {
+        DrumFlow& f = flows[static_cast<std::size_t>(k)];
+        a.value(f.angle), a.value(f.centre_angle), a.value(f.airborne), a.value(f.covered);
+        a.list(f.x), a.list(f.surface), a.list(f.slice), a.list(f.centres);
+    });
     ValidationTable table{
         "study", {"froude", "g", "omega", "R", "turns", "angle", "centre_angle", "airborne", "covered"}, {}},
         surface{"surface", {"froude", "g", "x", "z"}, {}},
         slice{"grains", {"froude", "g", "x", "z", "speed"}, {}};
     std::vector<Measured> measured;
-    for (const ScaledRun& r : all) {
-        DrumFlow f;
-        options.kept.part([&] { f = flow(r.of, grains, options); },
-                          [&](io::Archive& a) {
-                              a.value(f.angle), a.value(f.centre_angle), a.value(f.airborne),
-                                  a.value(f.covered);
-                              a.list(f.x), a.list(f.surface), a.list(f.slice), a.list(f.centres);
-                          });
-        options.progress(++done / parts);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const ScaledRun& r = all[n];
+        const DrumFlow& f = flows[n];
         const double Fr = r.of.froude, g = r.of.drum.g;
         table.rows.push_back(
             {Fr, g, r.of.omega(), r.of.drum.R, r.of.turns, f.angle, f.centre_angle, f.airborne, f.covered});
@@ -435,7 +441,8 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered = io::Registry<Validation>::add(
     {.name = "drum",
      .description = "flow of grains in a rotating drum over the Froude number (Fig. 7.19)",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

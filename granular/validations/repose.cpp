@@ -311,16 +311,24 @@ ValidationResult run(const ValidationOptions& options)
         heaps{"heaps", {"mu", "mu_r", "speed", "E", "seed", "left", "right", "r2", "grains"}, {}},
         surface{"surface", {"mu", "mu_r", "speed", "E", "seed", "x", "z"}, {}},
         spheres{"spheres", {"mu", "mu_r", "speed", "E", "seed", "x", "z", "radius"}, {}};
+    std::vector<Heap> heaps_of;
+    for (const Heaps& h : all)
+        for (int seed = 1; seed <= h.seeds; ++seed) heaps_of.push_back(h.of), heaps_of.back().seed = seed;
+    std::vector<RestingHeap> resting(heaps_of.size());
+    const auto compute = [&](long k) {
+        resting[static_cast<std::size_t>(k)] =
+            resting_heap(heaps_of[static_cast<std::size_t>(k)], options,
+                         [&](double share) { options.progress((done + share) / parts); });
+        options.progress(++done / parts);
+    };
+    options.kept.parts(static_cast<long>(heaps_of.size()), compute, [&](io::Archive& a, long k) {
+        RestingHeap& one = resting[static_cast<std::size_t>(k)];
+        a.list(one.spheres), a.value(one.grains), a.value(one.balance);
+    });
+    auto next = resting.cbegin();
     for (Heaps& h : all) {
         for (h.of.seed = 1; h.of.seed <= h.seeds; ++h.of.seed) {
-            RestingHeap one;
-            options.kept.part(
-                [&] {
-                    one = resting_heap(h.of, options,
-                                       [&](double share) { options.progress((done + share) / parts); });
-                },
-                [&](io::Archive& a) { a.list(one.spheres), a.value(one.grains), a.value(one.balance); });
-            options.progress(++done / parts);
+            const RestingHeap& one = *next++;
             const HeapSurface s = surface_of(one.spheres, h.of);
             const FlankAngles a = flank_angles(s, h.of);
             h.angles.push_back(a);
@@ -346,7 +354,8 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered = io::Registry<Validation>::add(
     {.name = "repose",
      .description = "angle of repose of a heap over the friction and the rolling resistance of its grains",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

@@ -23,6 +23,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace hilda::granular {
 
@@ -171,7 +172,7 @@ std::string settled_sample(const ShearBox& box, const ValidationOptions& options
                            const std::function<void(double)>& progress)
 {
     std::string bytes;
-    options.bed(
+    options.beds.bed(
         bed_case(box),
         [&] {
             Box now(box, options.device);
@@ -305,17 +306,30 @@ ValidationResult run(const ValidationOptions& options)
 {
     const std::vector<ShearTest> all = tests(options.full);
     if (options.full) options.announce("6 shear tests, 5 to 6 minutes of CPU time in the preset native");
+    std::set<double> of_samples;
+    for (const ShearTest& test : all) of_samples.insert(test.box.mu);
     std::map<double, std::string> samples;  // by mu
-    for (const ShearTest& test : all) samples[test.box.mu];
+    std::vector<ShearRecord> records(all.size());
     double done = 0;
-    const double parts = static_cast<double>(all.size() + samples.size());
-    for (auto& [mu, sample] : samples) {
-        ShearBox box = all.front().box;
-        box.mu = mu;
-        sample =
-            settled_sample(box, options, [&](double share) { options.progress((done + share) / parts); });
+    const auto parts = static_cast<double>(all.size() + of_samples.size());
+    const auto compute = [&](long k) {
+        const ShearTest& test = all[static_cast<std::size_t>(k)];
+        const auto [sample, is_new] = samples.try_emplace(test.box.mu);
+        if (is_new) {
+            ShearBox box = all.front().box;
+            box.mu = test.box.mu;
+            sample->second =
+                settled_sample(box, options, [&](double share) { options.progress((done + share) / parts); });
+            options.progress(++done / parts);
+        }
+        records[static_cast<std::size_t>(k)] = shear(test, sample->second, options);
         options.progress(++done / parts);
-    }
+    };
+    options.kept.parts(static_cast<long>(all.size()), compute, [&](io::Archive& a, long k) {
+        ShearRecord& r = records[static_cast<std::size_t>(k)];
+        a.value(r.sigma);
+        for (auto* column : {&r.x, &r.tau, &r.lid, &r.lid_load, &r.normal, &r.support}) a.list(*column);
+    });
 
     ValidationTable table{"study",
                           {"R", "stress", "speed", "mu", "sigma", "tau_peak", "x_peak", "ratio", "tau_end",
@@ -323,15 +337,9 @@ ValidationResult run(const ValidationOptions& options)
                           {}},
         curves{"motion", {"stress", "speed", "mu", "x", "tau", "lid", "lid_load", "normal", "support"}, {}};
     std::vector<Measured> measured;
-    for (const ShearTest& test : all) {
-        ShearRecord r;
-        options.kept.part([&] { r = shear(test, samples[test.box.mu], options); },
-                          [&](io::Archive& a) {
-                              a.value(r.sigma);
-                              for (auto* column : {&r.x, &r.tau, &r.lid, &r.lid_load, &r.normal, &r.support})
-                                  a.list(*column);
-                          });
-        options.progress(++done / parts);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const ShearTest& test = all[n];
+        const ShearRecord& r = records[n];
         const ShearRecord::Peak peak = r.peak();
         table.rows.push_back({test.box.R, test.stress, test.speed, test.box.mu, r.sigma, peak.tau, peak.x,
                               peak.tau / r.sigma, r.mean(r.tau, test.distance / 2, test.distance),
@@ -349,7 +357,8 @@ const bool registered = io::Registry<Validation>::add(
     {.name = "shear",
      .description =
          "shear stress of a sample of grains over the shear displacement and the normal stress (Fig. 7.12)",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

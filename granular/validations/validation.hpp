@@ -58,6 +58,16 @@ struct ValidationProgress {
     /// reads the result. The parts of a validation are numbered by the order of the calls.
     std::function<void(const Compute& compute, const Transfer& transfer)> part =
         [](const Compute& compute, const Transfer&) { compute(); };
+    using ComputePart = std::function<void(long part)>;
+    using TransferPart = std::function<void(io::Archive&, long part)>;
+    /// Computes the parts 0 to count - 1, which do not depend on each other, or reads their results.
+    /// `compute` may be called for some of them only, in another process, and in any order: a settled bed
+    /// is made where it is needed. A validation calls this function once and no part() after it; what follows
+    /// is executed where all results are known.
+    std::function<void(long count, const ComputePart& compute, const TransferPart& transfer)> parts =
+        [](long count, const ComputePart& compute, const TransferPart&) {
+            for (long k = 0; k < count; ++k) compute(k);
+        };
     using Read = std::function<void(const std::string& bytes, const std::string& file)>;
     /// Calls read() with the last state that save() has received before the interruption, if there is one.
     std::function<void(const Read&)> load = [](const Read&) {};
@@ -76,14 +86,6 @@ struct ValidationOptions {
 
     ValidationProgress kept = {};  ///< of an interrupted validation
     SettledBeds beds = {};         ///< settled beds of earlier runs
-
-    /// A settled bed as a part of the validation. It is read from the results before an interruption or from
-    /// its file, or computed. `transfer` writes or reads the bed.
-    void bed(const BedCase& of, const SettledBeds::Compute& compute,
-             const SettledBeds::Transfer& transfer) const
-    {
-        kept.part([&] { beds.bed(of, compute, transfer); }, transfer);
-    }
 
     /// Adds the warnings of a run at its end.
     void include(const std::string& run, const World& world) const
@@ -128,6 +130,7 @@ struct Validation {
     std::string name;         ///< for example head-on
     std::string description;  ///< what is validated, with the figure, in one line
     ValidationResult (*run)(const ValidationOptions&) = nullptr;
+    bool independent_parts = false;  ///< whether its simulations are those of ValidationProgress::parts
 };
 
 }  // namespace hilda::granular

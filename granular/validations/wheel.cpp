@@ -199,7 +199,7 @@ std::vector<Vec3> settled_soil(const WheelBed& bed, const ValidationOptions& opt
                                const std::function<void(double)>& progress)
 {
     std::vector<Vec3> grains;
-    options.bed(
+    options.beds.bed(
         bed_case(bed),
         [&] {
             Soil now(bed, bed.settling_mu, settling_mu_r, options.device);
@@ -412,26 +412,33 @@ ValidationResult run(const ValidationOptions& options)
                           {}},
         motion{"motion", {"wheel", "slip", "mu_r", "t", "pull", "load", "torque", "sinkage"}, {}},
         grains{"grains", {"wheel", "slip", "mu_r", "x", "z", "speed", "wheel_x", "wheel_z"}, {}};
-    std::vector<Measured> measured;
+    std::vector<WheelTest> drives;  // of each test on each of its beds
+    for (const auto& [test, beds] : all)
+        for (int n = 0; n < beds; ++n) drives.push_back(test), drives.back().bed.seed += n;
+    std::vector<WheelRecord> records(drives.size());
     std::map<std::string, std::vector<Vec3>> soils;  // by the hash of their case
-    for (const auto& [first, beds] : all) {
-        WheelTest test = first;
+    const auto compute = [&](long k) {
+        const WheelTest& test = drives[static_cast<std::size_t>(k)];
+        const auto [soil, is_new] = soils.try_emplace(bed_case(test.bed).hash());
+        if (is_new)
+            soil->second = settled_soil(test.bed, options,
+                                        [&](double share) { options.progress((done + share / 2) / parts); });
+        records[static_cast<std::size_t>(k)] = drive(test, soil->second, options);
+        options.progress(++done / parts);
+    };
+    options.kept.parts(static_cast<long>(drives.size()), compute, [&](io::Archive& a, long k) {
+        WheelRecord& r = records[static_cast<std::size_t>(k)];
+        for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage}) a.list(*column);
+        a.list(r.grains), a.value(r.from), a.value(r.power), a.value(r.dissipated), a.value(r.wheel_x),
+            a.value(r.wheel_z);
+    });
+    std::vector<Measured> measured;
+    auto record = records.cbegin();
+    for (const auto& [test, beds] : all) {
         const char* wheel = name_of(test.shape);
         WheelRecord pooled;  // the records of all beds, one after the other
-        for (int n = 0; n < beds; ++n, ++test.bed.seed) {
-            const auto [soil, is_new] = soils.try_emplace(bed_case(test.bed).hash());
-            if (is_new)
-                soil->second = settled_soil(
-                    test.bed, options, [&](double share) { options.progress((done + share / 2) / parts); });
-            WheelRecord r;
-            options.kept.part([&, &from = soil->second] { r = drive(test, from, options); },
-                              [&](io::Archive& a) {
-                                  for (auto* column : {&r.t, &r.pull, &r.load, &r.torque, &r.sinkage})
-                                      a.list(*column);
-                                  a.list(r.grains), a.value(r.from), a.value(r.power), a.value(r.dissipated),
-                                      a.value(r.wheel_x), a.value(r.wheel_z);
-                              });
-            options.progress(++done / parts);
+        for (int n = 0; n < beds; ++n, ++record) {
+            const WheelRecord& r = *record;
             pooled.append(r);
             if (n > 0) continue;
             for (std::size_t k = 0; k < r.t.size(); ++k)
@@ -449,7 +456,7 @@ ValidationResult run(const ValidationOptions& options)
         table.rows.push_back({wheel, test.slip, test.mu_r, count, pull.value, pull.deviation, torque.value,
                               torque.deviation, sinkage.value, sinkage.deviation, load.value, power,
                               dissipated});
-        measured.push_back({first, pull.value, load.value, torque.value, sinkage.value, power, dissipated});
+        measured.push_back({test, pull.value, load.value, torque.value, sinkage.value, power, dissipated});
     }
     return {{table, motion, grains}, checks(measured)};
 }
@@ -457,7 +464,8 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered = io::Registry<Validation>::add(
     {.name = "wheel",
      .description = "pull, torque and sinkage of a wheel on a bed of grains over the slip (Figs. 7.21-7.23)",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

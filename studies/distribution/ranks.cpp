@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <omp.h>
+
 #include <thread>
 
 namespace hilda::studies {
@@ -49,7 +51,11 @@ std::unique_ptr<Ranks> Ranks::start()
 
 Ranks::Ranks(std::unique_ptr<Communicator> communicator)
     : all(std::move(communicator)), others(static_cast<size_t>(all->size()))
-{}
+{
+    // A process that has used several threads of OpenMP cannot be copied for jobs that use them. Jobs run
+    // side by side instead (--jobs).
+    omp_set_num_threads(1);
+}
 
 Ranks::~Ranks()
 {

@@ -195,8 +195,19 @@ Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) cons
 void StudyContext::job(const std::function<void()>& job,
                        const std::function<void(io::Archive&)>& transfer) const
 {
-    Pool(1, "", 1, sharing.get()).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
+    JobSharing here{.finished = finished.get()};
+    Pool(1, "", 1, &here).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
 }
+
+void StudyContext::jobs(long count, const std::function<void(long)>& job,
+                        const Pool::Transfer& transfer) const
+{
+    const int processes = sharing->ranks == nullptr ? 1 : options.jobs;
+    Pool(processes, "", count, sharing.get()).run(job, transfer);
+    if (!sharing->lost.empty()) throw PartDone{};  // reported by finish_shard()
+}
+
+bool StudyContext::writes_results() const { return sharing->ranks == nullptr || sharing->ranks->is_first(); }
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
 {

@@ -63,10 +63,16 @@ public:
     /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
     /// and the label. The results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
-    /// Calls job(), on this thread and without a progress line. `transfer` writes or reads its result, which
-    /// is kept in the file of the finished jobs: a job that finished before the study was interrupted is not
-    /// called again.
+    /// Calls job(), on this thread and without a progress line, on each rank and in each shard. `transfer`
+    /// writes or reads its result, which is kept in the file of the finished jobs: a job that finished before
+    /// the study was interrupted is not called again.
     void job(const std::function<void()>& job, const std::function<void(io::Archive&)>& transfer) const;
+    /// Calls job(0) … job(count - 1), which do not depend on each other, one after the other on this thread
+    /// and without a progress line; ranks and shards share them. See job() for `transfer`. Ends the study
+    /// with PartDone if a rank has lost one.
+    void jobs(long count, const std::function<void(long)>& job, const Pool::Transfer& transfer) const;
+    /// Whether this process writes to the output directory: true except on the ranks of mpirun other than 0
+    bool writes_results() const;
 
     // Results
     StudyText text;                                          ///< for stdout

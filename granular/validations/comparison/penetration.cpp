@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace hilda::granular {
 
@@ -139,24 +140,29 @@ ValidationResult run(const ValidationOptions& options)
         motion{"motion", {"grains", "softness", "t", "z", "v"}, {}};
     const auto parts = static_cast<double>(2 * all.size());
     double done = 0, lost = 0, fall = 0, rise = 0, lowest = BallMotion::start / BallMotion::radius;
+    struct Part {
+        std::uint64_t grains = 0;  ///< of the bed
+        BallMotion motion;
+    };
+    std::vector<Part> balls(all.size());
+    const auto compute = [&](long k) {
+        const Penetration& test = all[static_cast<std::size_t>(k)];
+        const std::vector<Vec3> bed =
+            penetration_bed(test, options, [&](double share) { options.progress((done + share) / parts); });
+        options.progress(++done / parts);
+        balls[static_cast<std::size_t>(k)] = {bed.size(), ball_motion(test, bed, options)};
+        options.progress(++done / parts);
+    };
+    options.kept.parts(static_cast<long>(all.size()), compute, [&](io::Archive& a, long k) {
+        auto& [grains, m] = balls[static_cast<std::size_t>(k)];
+        a.value(grains), a.list(m.t), a.list(m.z), a.list(m.v), a.value(m.surface), a.value(m.lost);
+    });
     std::vector<double> depths;
-    for (const Penetration& test : all) {
-        std::vector<Vec3> bed;
-        options.kept.part(
-            [&] {
-                bed = penetration_bed(test, options,
-                                      [&](double share) { options.progress((done + share) / parts); });
-            },
-            [&](io::Archive& a) { a.list(bed); });
-        options.progress(++done / parts);
-        BallMotion m;
-        options.kept.part([&] { m = ball_motion(test, bed, options); },
-                          [&](io::Archive& a) {
-                              a.list(m.t), a.list(m.z), a.list(m.v), a.value(m.surface), a.value(m.lost);
-                          });
-        options.progress(++done / parts);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const Penetration& test = all[n];
+        const BallMotion& m = balls[n].motion;
         const std::size_t contact = m.contact(), stop = m.stop();
-        const auto grains = static_cast<double>(bed.size());
+        const auto grains = static_cast<double>(balls[n].grains);
         table.rows.push_back({grains, 2 * test.radius(), test.scale.softness, m.surface,
                               m.t[stop] - m.t[contact], m.z[stop], m.depth(), m.z.back(), m.peak()});
         for (std::size_t k = 0; k < m.t.size(); ++k)
@@ -185,7 +191,8 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered = io::Registry<Validation>::add(
     {.name = "comparison-penetration",
      .description = "impact of a steel ball on a bed of grains (comparison of ten codes, case 3)",
-     .run = run});
+     .run = run,
+     .independent_parts = true});
 
 }  // namespace
 

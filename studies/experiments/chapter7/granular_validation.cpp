@@ -41,7 +41,8 @@ Table as_table(const ValidationTable& validation_table)
 }
 
 /// Keeps the results of the parts with their warnings in the file of the finished jobs, and the state of a
-/// long part in a checkpoint of the output directory. `of_part` receives the warnings of a part.
+/// long part in a checkpoint of the output directory. Ranks and shards share independent parts. `of_part`
+/// receives the warnings of a part.
 granular::ValidationProgress kept_by(const StudyContext& study, granular::ValidationWarnings& warnings,
                                      granular::ValidationWarnings& of_part)
 {
@@ -50,6 +51,18 @@ granular::ValidationProgress kept_by(const StudyContext& study, granular::Valida
         of_part = {};
         study.job(compute, [&](io::Archive& a) { transfer(a), of_part.transfer(a); });
         warnings.include(of_part);
+    };
+    kept.parts = [&](long count, const auto& compute, const auto& transfer) {
+        std::vector<granular::ValidationWarnings> of_parts(static_cast<std::size_t>(count));
+        const auto job = [&](long k) {
+            of_part = {};
+            compute(k);
+            of_parts[static_cast<std::size_t>(k)] = of_part;
+        };
+        study.jobs(count, job, [&](io::Archive& a, long k) {
+            transfer(a, k), of_parts[static_cast<std::size_t>(k)].transfer(a);
+        });
+        for (const granular::ValidationWarnings& of : of_parts) warnings.include(of);
     };
     if (study.options.output.empty()) return kept;
     const io::CheckpointFiles files(study.options.output);
@@ -164,7 +177,8 @@ std::vector<Study> all()
     for (const Validation& v : io::Registry<Validation>::all())
         studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
-                           .accepted = takes::check | takes::grid | takes::strict,
+                           .accepted = takes::check | takes::grid | takes::strict |
+                                       (v.independent_parts ? takes::shard : 0U),
                            .lacking = lacks::all,
                            .files = files_of("granular-" + v.name),
                            .run = [v](StudyContext& study) { validate(v, study); }});

@@ -115,33 +115,6 @@ TEST_CASE("a settled bed is computed once for each case and read afterwards", "[
     CHECK(counted.computed == 3);
 }
 
-TEST_CASE("a settled bed is a part of a validation, which an interrupted one reads", "[granular][beds]")
-{
-    const io::Archive::Format format{"TESTPART", 1};
-    std::string kept;
-    ValidationOptions options;
-    options.kept.part = [&](const auto& compute, const auto& transfer) {
-        if (kept.empty()) {
-            compute();
-            io::Archive a(format);
-            transfer(a);
-            kept = a.bytes();
-        } else {
-            io::Archive a(format, kept, "kept");
-            transfer(a);
-            a.end();
-        }
-    };
-    int computed = 0;
-    for (int run = 0; run < 2; ++run) {
-        std::string bytes;
-        options.bed(
-            a_case, [&] { ++computed, bytes = "grains"; }, [&](io::Archive& a) { a.list(bytes); });
-        CHECK(bytes == "grains");
-    }
-    CHECK(computed == 1);
-}
-
 TEST_CASE("a damaged or outdated bed is settled again with one warning", "[granular][beds]")
 {
     const Folder folder;

@@ -96,6 +96,19 @@ TEST_CASE("a study under mpirun gives the bytes of the study for any number of r
     CHECK(read(in / "shards/study.csv") == table);
 }
 
+TEST_CASE("a validation of grains under mpirun gives its bytes (long)", "[studies][ranks]")
+{
+    if (!mpirun_works()) return;
+    const Scratch in;
+    const std::vector<std::string> brick = {"study", "granular-brick", "--no-plot", "--quiet", "--output"};
+    REQUIRE(call(in, with(brick, {"whole"})).code == 0);
+    const Ended ended = mpirun(in, 3, with(brick, {"ranks"}));
+    CAPTURE(ended.err);
+    CHECK(ended.code == 0);
+    for (const char* file : {"study.csv", "motion.csv"})
+        CHECK(read(in / "ranks" / file) == read(in / "whole" / file));
+}
+
 TEST_CASE("a run under mpirun whose process is killed is a row; the other runs are computed",
           "[studies][ranks]")
 {

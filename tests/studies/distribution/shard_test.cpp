@@ -123,6 +123,21 @@ TEST_CASE("hilda collect copies the motions of the runs; an interrupted shard co
                   "needs the same content of swing.json");
 }
 
+TEST_CASE("the shards of a validation of grains give its tables and criteria (long)", "[studies][shard]")
+{
+    const Scratch in;
+    const std::vector<std::string> brick = {"study", "granular-brick", "--no-plot", "--check"};
+    REQUIRE(call(in, with(brick, {"--output", "whole"})).code == 0);
+    for (int k = 1; k <= 3; ++k) REQUIRE(compute(in, brick, "part", k, 3).code == 0);
+    const Ended all = call(in, {"collect", folder("part", 1, 3), folder("part", 2, 3), folder("part", 3, 3),
+                                "--no-plot", "--output", "all"});
+    CAPTURE(all.err);
+    CHECK(all.code == 0);
+    for (const char* file : {"study.csv", "motion.csv"})
+        CHECK(read(in / "all" / file) == read(in / "whole" / file));
+    CHECK(record(in / "all") == record(in / "whole"));
+}
+
 TEST_CASE("more shards than runs are allowed", "[studies][shard]")
 {
     const Scratch in;

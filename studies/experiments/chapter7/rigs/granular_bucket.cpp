@@ -226,24 +226,25 @@ void run_study(StudyContext& s)
     double top = 0;
     s.job([&] { top = rigs.settle(soil); }, [&](io::Archive& a) { a.value(top); });
     std::vector<Result> results;
+    for (const BucketTest& test : grid.tests) results.push_back({.test = test});
+    const auto job = [&](long k) {
+        Result& result = results[static_cast<std::size_t>(k)];
+        const BucketTest test = result.test;
+        RigBed bed = soil;
+        bed.mu = test.mu, bed.mu_r = test.mu_r;
+        const Arm arm(bed, top, test.depth);
+        const Vec3 r = arm.bucket + Vec3(0, width / 2, 0) - arm.centre;
+        result = measure(test, bed,
+                         rigs.run(test.name, bed, model(arm), boundaries(arm),
+                                  {{"body", "bucket"}, {"r", as_json(r)}}, test.substeps, end),
+                         top);
+    };
+    s.jobs(static_cast<long>(results.size()), job,
+           [&](io::Archive& a, long k) { transfer(a, results[static_cast<std::size_t>(k)]); });
     Table motion({{"test"}, {"t"}, {"x"}, {"z"}, {"Fx"}, {"Fz"}, {"work"}}),
         grains({{"test"}, {"x"}, {"y"}, {"z"}});
-    for (const BucketTest& test : grid.tests) {
-        Result result{.test = test};
-        const auto job = [&] {
-            RigBed bed = soil;
-            bed.mu = test.mu, bed.mu_r = test.mu_r;
-            const Arm arm(bed, top, test.depth);
-            const Vec3 r = arm.bucket + Vec3(0, width / 2, 0) - arm.centre;
-            result = measure(test, bed,
-                             rigs.run(test.name, bed, model(arm), boundaries(arm),
-                                      {{"body", "bucket"}, {"r", as_json(r)}}, test.substeps, end),
-                             top);
-        };
-        s.job(job, [&](io::Archive& a) { transfer(a, result); });
-        add_rows(motion, {test.name}, result.motion, 6), add_rows(grains, {test.name}, result.grains, 3);
-        results.push_back(result);
-    }
+    for (const Result& r : results)
+        add_rows(motion, {r.test.name}, r.motion, 6), add_rows(grains, {r.test.name}, r.grains, 3);
     s.files = {{"motion.csv", motion.csv()}, {"grains.csv", grains.csv()}};
     s.table = columns.csv(results);
     s.text << "A bucket of " << side << " m digs in a bed of grains\n\n";
@@ -255,7 +256,7 @@ void run_study(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "granular-bucket",
      .answers = "two-link arm whose bucket digs in a bed of grains, in co-simulation",
-     .accepted = takes::check | takes::grid,
+     .accepted = takes::check | takes::grid | takes::shard,
      .lacking = lacks::all,
      .files = {"motion.csv", "grains.csv", "granular-bucket.png"},
      .run = run_study});

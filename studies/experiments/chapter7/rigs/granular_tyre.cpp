@@ -305,24 +305,26 @@ void run_study(StudyContext& s)
     double top = 0;
     s.job([&] { top = rigs.settle(soil); }, [&](io::Archive& a) { a.value(top); });
     std::vector<Result> results;
+    for (const TyreTest& test : grid.tests) results.push_back({.test = test});
+    const auto job = [&](long k) {
+        Result& result = results[static_cast<std::size_t>(k)];
+        const TyreTest test = result.test;
+        RigBed bed = soil;
+        bed.mu_r = test.mu_r;
+        const double axle = top + radius + 1e-3;
+        io::Json pair;
+        pair["body"] = "tyre";
+        const RigRun run = rigs.run(test.name(), bed, model(test, bed, axle, end),
+                                    io::Json::List{tyre(bed, axle)}, pair, substeps, end);
+        result = measure(test, run, top, from);
+    };
+    s.jobs(static_cast<long>(results.size()), job,
+           [&](io::Archive& a, long k) { transfer(a, results[static_cast<std::size_t>(k)]); });
     Table motion({{"slip"}, {"imposed"}, {"mu_r"}, {"t"}, {"pull"}, {"load"}, {"torque"}, {"sinkage"}}),
         grains({{"slip"}, {"imposed"}, {"mu_r"}, {"x"}, {"z"}, {"speed"}, {"tyre_x"}, {"tyre_z"}});
-    for (const TyreTest& test : grid.tests) {
-        Result result{.test = test};
-        const auto job = [&] {
-            RigBed bed = soil;
-            bed.mu_r = test.mu_r;
-            const double axle = top + radius + 1e-3;
-            io::Json pair;
-            pair["body"] = "tyre";
-            const RigRun run = rigs.run(test.name(), bed, model(test, bed, axle, end),
-                                        io::Json::List{tyre(bed, axle)}, pair, substeps, end);
-            result = measure(test, run, top, from);
-        };
-        s.job(job, [&](io::Archive& a) { transfer(a, result); });
-        const std::vector<Table::Cell> key = {result.slip, test.is_free() ? 0L : 1L, test.mu_r};
-        add_rows(motion, key, result.motion, 5), add_rows(grains, key, result.grains, 5);
-        results.push_back(result);
+    for (const Result& r : results) {
+        const std::vector<Table::Cell> key = {r.slip, r.test.is_free() ? 0L : 1L, r.test.mu_r};
+        add_rows(motion, key, r.motion, 5), add_rows(grains, key, r.grains, 5);
     }
     s.files = {{"motion.csv", motion.csv()}, {"grains.csv", grains.csv()}};
     s.table = columns.csv(results);
@@ -335,7 +337,7 @@ void run_study(StudyContext& s)
 const bool registered = io::Registry<Study>::add(
     {.name = "granular-tyre",
      .answers = "single-wheel rig with a tyre, imposed and free slip, in co-simulation (Figs. 7.20-7.25)",
-     .accepted = takes::check | takes::grid,
+     .accepted = takes::check | takes::grid | takes::shard,
      .lacking = lacks::all,
      .files = {"motion.csv", "grains.csv", "granular-tyre.png"},
      .run = run_study});

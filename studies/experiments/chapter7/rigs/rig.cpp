@@ -68,33 +68,32 @@ double RigRun::last(const std::string& column) const { return tools.values(colum
 
 Rigs::Rigs(const StudyContext& of) : study(of)
 {
-    const bool kept = !study.options.output.empty();
-    folder =
-        kept
-            ? study.options.output + "/runs"
-            : (fs::temp_directory_path() / ("hilda-" + study.name + '-' + std::to_string(getpid()))).string();
-    fs::create_directories(folder);
+    const std::string &output = study.options.output,
+                      own = "hilda-" + study.name + '-' + std::to_string(getpid());
+    if (output.empty() || !study.writes_results()) temporary = (fs::temp_directory_path() / own).string();
+    folder = output.empty() ? temporary : output + "/runs";
+    bed_folder = temporary.empty() ? folder : temporary;
+    fs::create_directories(bed_folder);
 }
 
 Rigs::~Rigs()
 {
-    if (!study.options.output.empty()) return;
     std::error_code ignored;
-    fs::remove_all(folder, ignored);
+    if (!temporary.empty()) fs::remove_all(temporary, ignored);
 }
 
-std::string Rigs::folder_of(const std::string& name) const
+std::string Rigs::folder_of(const std::string& parent, const std::string& name) const
 {
     if (!study.options.quiet) io::message("hilda: study " + study.name + ": " + name + '\n');
-    std::string path = folder + '/' + name;
-    std::replace(path.begin() + static_cast<std::ptrdiff_t>(folder.size()), path.end(), ' ', '-');
+    std::string path = parent + '/' + name;
+    std::replace(path.begin() + static_cast<std::ptrdiff_t>(parent.size()), path.end(), ' ', '-');
     fs::create_directories(path);
     return path;
 }
 
 double Rigs::settle(const RigBed& bed)
 {
-    const std::string path = folder_of("bed");
+    const std::string path = folder_of(bed_folder, "bed");
     io::Json all = case_of(bed, 0.1, bed.mu_r,
                            {{"type", "lattice"},
                             {"low", {0, 0, 0}},
@@ -117,8 +116,8 @@ double Rigs::settle(const RigBed& bed)
 RigRun Rigs::run(const std::string& name, const RigBed& bed, const io::Json& model,
                  const io::Json& boundaries, const io::Json& pair, long substeps, double end) const
 {
-    const std::string path = folder_of(name), table = fs::absolute(path).string() + "/bed.csv";
-    fs::copy_file(folder + "/bed/out/particles.csv", table, fs::copy_options::overwrite_existing);
+    const std::string path = folder_of(folder, name), table = fs::absolute(path).string() + "/bed.csv";
+    fs::copy_file(bed_folder + "/bed/out/particles.csv", table, fs::copy_options::overwrite_existing);
     io::Json all = case_of(bed, bed.mu, bed.mu_r, {{"type", "csv"}, {"file", table}});
     for (const io::Json& b : *boundaries.list()) all["boundaries"].push_back(b);
     const double H = static_cast<double>(substeps) * bed.h;

@@ -44,7 +44,7 @@ struct RigRun {
 class Rigs {
 public:
     /// Makes the folder of the runs: below the output directory of the study, or a temporary one, which the
-    /// destructor removes.
+    /// destructor removes. Ranks of mpirun other than 0 have a temporary folder for their bed.
     explicit Rigs(const StudyContext& study);
     ~Rigs();
     Rigs(const Rigs&) = delete;
@@ -61,10 +61,10 @@ public:
 
 private:
     /// Makes the folder of a run and reports its beginning.
-    std::string folder_of(const std::string& name) const;
+    std::string folder_of(const std::string& parent, const std::string& name) const;
 
     const StudyContext& study;
-    std::string folder;
+    std::string folder, bed_folder, temporary;  ///< of the runs, of the bed; "": none
 };
 
 /// Adds the rows of a matrix, stored by rows with this number of columns, after the cells of a key.

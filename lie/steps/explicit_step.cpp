@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/steps/explicit_step.hpp"
 
-#include "lie/steps/projection.hpp"
-#include "lie/system.hpp"
-
 namespace hilda::lie {
 
 ExplicitStep::ExplicitStep(const System& model, const Settings& settings)
@@ -31,22 +28,6 @@ void ExplicitStep::place(State& x, const Eigen::VectorXd& d)
         body.rdot = from.rdot + change.segment<3>(6);
         body.omega_bar = from.omega_bar + change.tail<3>();
     }
-}
-
-int ExplicitStep::finish(State& x, const std::string& scheme)
-{
-    for (int k = 1; k <= settings.max_iterations; ++k) {
-        set_position_residual(model, K, x, e);
-        K.solve(e);
-        move(K, x, e);
-        if (!converged(k, length_of_motion(e), K.constraint_part(e), 0)) continue;
-        assemble_once(x);
-        set_momenta(model, x, e);
-        solve_velocities(model, K, x, e);
-        set_accelerations(x);
-        return k;
-    }
-    no_convergence(scheme, correction, x);
 }
 
 }  // namespace hilda::lie

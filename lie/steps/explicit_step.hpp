@@ -26,14 +26,6 @@ protected:
     /// The poses and velocities of x are those of x_n changed by d, the increments of (r, θ, ṙ, ω̄).
     void place(State& x, const Eigen::VectorXd& d);
 
-    /// The end of a step: projects the positions of x onto Φ = 0 by Newton steps with the present K, then the
-    /// velocities onto Φ_r ṙ + Π̄ ω̄ = ν, and computes accelerations and multipliers.
-    ///
-    /// The corrections are the shortest in the metric of the mass. They are of the size of the local error,
-    /// so that the order remains (Hairer, Lubich, Wanner 2006, Sec. IV.4). Returns the number of Newton
-    /// steps.
-    int finish(State& x, const std::string& scheme);
-
     Eigen::VectorXd theta;  ///< θ of each body at the stage
 };
 

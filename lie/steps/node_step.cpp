@@ -2,6 +2,7 @@
 #include "lie/steps/node_step.hpp"
 
 #include "lie/steps/accelerations.hpp"
+#include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -24,6 +25,22 @@ void NodeStep::set_accelerations(State& x)
 {
     assemble_once(x);
     solve_accelerations(model, K, x, loads, e);
+}
+
+int NodeStep::finish(State& x, const std::string& scheme)
+{
+    for (int k = 1; k <= settings.max_iterations; ++k) {
+        set_position_residual(model, K, x, e);
+        K.solve(e);
+        move(K, x, e);
+        if (!converged(k, length_of_motion(e), K.constraint_part(e), 0)) continue;
+        assemble_once(x);
+        set_momenta(model, x, e);
+        solve_velocities(model, K, x, e);
+        set_accelerations(x);
+        return k;
+    }
+    no_convergence(scheme, correction, x);
 }
 
 bool NodeStep::assembled_at(const State& x) const

@@ -7,6 +7,7 @@
 #include "lie/steps/saddle_step.hpp"
 
 #include <limits>
+#include <string>
 
 namespace hilda::lie {
 
@@ -23,6 +24,14 @@ protected:
     /// Sets r̈, ω̄̇, λ of x: K (r̈, ω̄̇, λ) = (F, τ̄, γ)                                Fang (2022), Eqs.
     /// 2.9, 2.17
     void set_accelerations(State& x);
+
+    /// The end of a step: projects the positions of x onto Φ = 0 by Newton steps with the present K, then the
+    /// velocities onto Φ_r ṙ + Π̄ ω̄ = ν, and computes accelerations and multipliers.
+    ///
+    /// The corrections are the shortest in the metric of the mass. They are of the size of the local error,
+    /// so that the order remains (Hairer, Lubich, Wanner 2006, Sec. IV.4). Returns the number of Newton
+    /// steps.
+    int finish(State& x, const std::string& scheme);
 
 private:
     bool assembled_at(const State& x) const;

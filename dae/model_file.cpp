@@ -48,6 +48,9 @@ public:
         if (o.has("outputs"))
             o.record("outputs", each(o, "outputs", false,
                                      [this](const Json& v, const std::string& at) { return output(v, at); }));
+        if (o.has("events"))
+            o.record("events", each(o, "events", false,
+                                    [this](const Json& v, const std::string& at) { return event(v, at); }));
         o.find("parameters");  // read by Parameters
         o.allow_schema();
         out.text = written(o.finish()) + "\n";
@@ -273,15 +276,33 @@ private:
     {
         ObjectReader o(source, v, at);
         const auto [name, type] = heading<OutputType>(o, output_names);
-        std::vector<std::string> columns = {"t", "energy"};
-        for (const auto& preceding : out.outputs) columns.push_back(preceding->name);
         std::unique_ptr<Output> output =
-            o.located([&, type = type] { return type->read(o, *this, out.x, columns); });
+            o.located([&, type = type] { return type->read(o, *this, out.x, columns_of_outputs()); });
         output->name = name;
         if (output->place.empty()) output->place = o.place();
         output->name_place = o.place("name");
         Json recorded = o.finish();
         out.outputs.push_back(std::move(output));
+        return recorded;
+    }
+
+    /// Columns with names that a parameter may have
+    std::vector<std::string> columns_of_outputs() const
+    {
+        std::vector<std::string> columns = {"t", "energy"};
+        for (const auto& preceding : out.outputs) columns.push_back(preceding->name);
+        return columns;
+    }
+
+    Json event(const Json& v, const std::string& at)
+    {
+        ObjectReader o(source, v, at);
+        const std::string name = unique_name(o, "event", event_names);
+        Event event = read_event(o, columns_of_outputs());
+        event.value->name = name;
+        event.value->name_place = o.place("name");
+        Json recorded = o.finish();
+        out.events.push_back(std::move(event));
         return recorded;
     }
 
@@ -353,7 +374,7 @@ private:
     Model& model;
     std::map<std::string, int> by_name;
     std::map<int, int> by_id;
-    std::set<std::string> constraint_names, force_names, contact_names, output_names;
+    std::set<std::string> constraint_names, force_names, contact_names, output_names, event_names;
     bool ground_listed = false;
     int ignored = 0;  // number of constraints with f_dot or f_ddot
     std::string ignored_place;

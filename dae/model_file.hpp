@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "dae/outputs/output.hpp"
+#include "dae/outputs/event.hpp"
 #include "dae/start.hpp"
 
 #include <span>
@@ -25,6 +25,7 @@ struct Description {
     /// contact K to which `normal_rows` applies
     std::vector<std::string> changes;
     std::vector<std::unique_ptr<Output>> outputs;
+    std::vector<Event> events;
     std::vector<std::pair<std::string, double>> parameters;  ///< names and values in the order of the file
     std::vector<std::string> warnings;                       ///< one line each, with the location
     std::vector<std::string>

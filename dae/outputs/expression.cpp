@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Output type expression: a formula in the columns of the run.
-#include "dae/outputs/output.hpp"
+#include "dae/outputs/expression.hpp"
 
 namespace hilda::dae {
 
 namespace {
-
-class ExpressionOutput final : public Output {
-public:
-    ExpressionOutput(std::string text, std::string unit) : text(std::move(text)), unit(std::move(unit)) {}
-
-    std::vector<Quantity> quantities() const override { return {{"", unit, text}}; }
-    void values(const State&, const double*, double*) const override {}
-    std::string expression() const override { return text; }
-
-private:
-    const std::string text, unit;
-};
 
 const TypeSchema schema = {
     .description =

@@ -13,6 +13,7 @@
 #include "lie/solver/saddle.hpp"
 #include "studies/framework/recommended_integrator.hpp"
 #include "studies/running/contact_outputs.hpp"
+#include "studies/running/events/run_events.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/output_columns.hpp"
 #include "studies/running/run_settings.hpp"
@@ -291,7 +292,8 @@ int check_model(const CheckOptions& options)
     if (!options.write.empty()) write_projected(d, options.model, options.write);
     const dae::Model& model = *d.model;
     const Recommendation recommended = recommended_integrator(model, d.x, start.degrees_of_freedom);
-    const size_t output_columns = OutputColumns(model, d.outputs).columns.size();
+    const size_t output_columns =
+        OutputColumns(model, outputs_and_events(d)).columns.size() - d.events.size();
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
@@ -365,6 +367,7 @@ int check_model(const CheckOptions& options)
     line("forces", std::to_string(other_forces));
     if (output_columns > 0)
         line("outputs", io::counted(static_cast<long>(output_columns), "column") + " in outputs.csv");
+    if (!d.events.empty()) line("events", io::counted(static_cast<long>(d.events.size()), "formula"));
     std::string parameters;
     const char* label = "parameters";
     for (const auto& [name, value] : d.parameters) {

@@ -11,15 +11,6 @@ namespace {
 
 constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 11};
 
-void transfer(io::Archive& a, lie::State& x)
-{
-    static_assert(sizeof(lie::Motion) == 24 * sizeof(double),
-                  "a motion must consist of 24 numbers without padding");
-    a.value(x.t);
-    a.list(x.body), a.list(x.alpha), a.list(x.lambda);
-    a.list(x.discrete_state), a.list(x.internal_state), a.list(x.history);
-}
-
 void transfer(io::Archive& a, contact::ContactEvent& e)
 {
     using Type = contact::ContactEvent::Type;
@@ -36,9 +27,9 @@ void transfer(io::Archive& a, Checkpoint& c)
     a.map(c.settings);
     a.value(c.end), a.value(c.interval);
     a.check(c.end >= 0 && c.interval > 0, "invalid end or interval of the rows");
-    transfer(a, c.node);
+    transfer_state(a, c.node);
     a.value(c.number), a.value(c.iterations);
-    transfer(a, c.pivots);
+    transfer_state(a, c.pivots);
     a.value(c.statistics);
     Invariants& i = c.invariants;
     a.value(i.nodes), a.value(i.rows), a.value(i.energy_start), a.value(i.energy_end),
@@ -55,6 +46,15 @@ void transfer(io::Archive& a, Checkpoint& c)
 }
 
 }  // namespace
+
+void transfer_state(io::Archive& a, lie::State& x)
+{
+    static_assert(sizeof(lie::Motion) == 24 * sizeof(double),
+                  "a motion must consist of 24 numbers without padding");
+    a.value(x.t);
+    a.list(x.body), a.list(x.alpha), a.list(x.lambda);
+    a.list(x.discrete_state), a.list(x.internal_state), a.list(x.history);
+}
 
 std::string to_bytes(Checkpoint checkpoint)
 {

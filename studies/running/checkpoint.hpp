@@ -34,6 +34,8 @@ struct Checkpoint {
     double wall_seconds = 0;
 };
 
+/// Writes or reads a state.
+void transfer_state(io::Archive& a, lie::State& x);
 /// Serialises a checkpoint.
 std::string to_bytes(Checkpoint checkpoint);
 /// Inverse of to_bytes(). `file` is for the message. io::IoError if the bytes are damaged or of another

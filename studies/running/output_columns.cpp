@@ -60,10 +60,17 @@ std::unique_ptr<ColumnGroup> constraint_norm_column(const dae::Model& model)
     return std::make_unique<ConstraintNormColumn>(model);
 }
 
-std::vector<dae::Quantity> columns_of(const std::vector<std::unique_ptr<dae::Output>>& outputs)
+std::vector<const dae::Output*> pointers(const std::vector<std::unique_ptr<dae::Output>>& outputs)
+{
+    std::vector<const dae::Output*> all;
+    for (const auto& output : outputs) all.push_back(output.get());
+    return all;
+}
+
+std::vector<dae::Quantity> columns_of(const std::vector<const dae::Output*>& outputs)
 {
     std::vector<dae::Quantity> all;
-    for (const auto& output : outputs)
+    for (const dae::Output* output : outputs)
         for (const dae::Quantity& q : output->quantities())
             all.push_back({q.name.empty() ? output->name : output->name + '.' + q.name, q.unit, q.meaning});
     return all;
@@ -84,6 +91,10 @@ std::string hint_of_braces(const std::string& text, const std::vector<std::strin
 
 OutputColumns::OutputColumns(const dae::Model& model,
                              const std::vector<std::unique_ptr<dae::Output>>& outputs)
+    : OutputColumns(model, pointers(outputs))
+{}
+
+OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const dae::Output*>& outputs)
     : ColumnGroup(columns_of(outputs))
 {
     std::vector<std::string> names = {"t"};
@@ -92,8 +103,8 @@ OutputColumns::OutputColumns(const dae::Model& model,
         for (const dae::Quantity& c : sources.back().group->columns) names.push_back(c.name);
     }
     first_output = names.size();
-    for (const auto& output : outputs) {
-        Part part{.output = output.get(),
+    for (const dae::Output* output : outputs) {
+        Part part{.output = output,
                   .count = output->quantities().size(),
                   .saved = std::vector<double>(output->saved_numbers()),
                   .expression = {}};
@@ -109,7 +120,7 @@ OutputColumns::OutputColumns(const dae::Model& model,
             const std::string& name = columns[names.size() - first_output].name;
             if (std::find(names.begin(), names.end(), name) != names.end())
                 throw lie::InvalidInput(output->name_place + ": the column '" + name +
-                                        "' exists already; give the output another name");
+                                        "' exists already; give this one another name");
             names.push_back(name);
         }
         parts.push_back(std::move(part));

@@ -18,6 +18,7 @@ public:
     /// The model and the outputs must outlive this object. lie::InvalidInput with the place of an expression
     /// that is invalid or names an unknown column.
     OutputColumns(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs);
+    OutputColumns(const dae::Model& model, const std::vector<const dae::Output*>& outputs);
     ~OutputColumns() override;
 
     void node(const lie::State& x) override;

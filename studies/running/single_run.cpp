@@ -83,6 +83,12 @@ RunResult SingleRun::execute()
     using Action = Watch::Action;
     Watch watch(*description.model, description.x, *integrator, scheme, grid,
                 options.strict ? Action::strict : Action::stop, options.force);
+    const std::shared_ptr<RunTables> tables = run_tables(options.outputs, directory,
+                                                         {{"program", version_line()},
+                                                          {"command_line", options.command_line},
+                                                          {"integrator", scheme.name},
+                                                          {"model", description.name},
+                                                          {"model_text", text_of_model()}});
     Recorder recorder({.model = *description.model,
                        .outputs = description.outputs,
                        .model_name = description.name,
@@ -91,15 +97,11 @@ RunResult SingleRun::execute()
                        .directory = directory,
                        .options = options.outputs,
                        .warn = [this](const std::string& what) { warn(what); },
-                       .tables = run_tables(options.outputs, directory,
-                                            {{"program", version_line()},
-                                             {"command_line", options.command_line},
-                                             {"integrator", scheme.name},
-                                             {"model", description.name},
-                                             {"model_text", text_of_model()}}),
+                       .tables = tables,
                        .coupling = options.coupling},
                       *integrator, watch);
     check_step(from.has_value());
+    if (!description.events.empty()) events = make_events(integrator_settings, *tables);
     if (options.error)
         refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
                                                 integrator_settings, grid);
@@ -108,8 +110,8 @@ RunResult SingleRun::execute()
     remove_figure(directory, "trajectory.png");  // of the shorter run, if this one continues it
     result.setup_seconds = seconds(Clock::now() - begin);
     march(*integrator, recorder);
-    if (const auto* events = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
-        for (const contact::ContactEvent& e : events->events())
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
+        for (const contact::ContactEvent& e : unilateral->events())
             if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
@@ -122,6 +124,25 @@ RunResult SingleRun::execute()
     if (options.coupling != nullptr) options.coupling->close(result.exit_code);
     finish(recorder);
     return std::move(result);
+}
+
+/// io::UsageError if the run cannot have events
+std::unique_ptr<RunEvents> SingleRun::make_events(const lie::Settings& integrator_settings,
+                                                  RunTables& tables) const
+{
+    const auto refuse = [&](const std::string& why) {
+        throw io::UsageError("run: " + description.events.front().value->name_place + ": " + why);
+    };
+    if (options.coupling != nullptr) refuse("a co-simulation has no events");
+    if (!scheme.resumes)
+        refuse(scheme.name + " stores past steps outside the state; events need another integrator");
+    if (options.error) refuse("--error is for models without events");
+    const auto make = [this, integrator_settings] {
+        return contact::make_integrator(*description.model, scheme, integrator_settings);
+    };
+    if (dynamic_cast<contact::UnilateralStep*>(make().get()) != nullptr)
+        refuse("a model with unilateral contacts as constraints has no events");
+    return std::make_unique<RunEvents>(description, make, tables);
 }
 
 void SingleRun::read()
@@ -283,7 +304,7 @@ void SingleRun::clear_directory() const
 {
     io::CheckpointFiles(directory).remove();
     io::Sinks<RunSetup>::remove(directory);
-    std::remove(path("summary.json").c_str());
+    for (const char* file : {"summary.json", "events.csv"}) std::remove(path(file).c_str());
     io::write_file(path("model.json"), text_of_model());
 }
 
@@ -301,6 +322,10 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
         result.resumed_at = from->number;
     }
     recorder.open(from);
+    if (events) {
+        const auto saved = from ? from->sinks.find("events") : decltype(from->sinks.find("")){};
+        events->open(from && saved != from->sinks.end() ? saved->second : "", from_file);
+    }
     if (options.coupling != nullptr)
         options.coupling->begin(march, [this](const std::string& what) { add_warning(what); });
     begin = Clock::now();
@@ -312,6 +337,15 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
     last_node = march.node().t;
     result.invariants = recorder.invariants;
     recorder.close();
+    if (events) {
+        events->close();
+        result.located = events->counts();
+        if (const std::string fault = events->fault(); !fault.empty() && result.status == "ok") {
+            result.status = "event_not_finite", result.message = fault;
+            result.exit_code = io::exit_code::numerical_failure;
+            io::message("hilda: error[" + result.status + "]: " + fault + '\n');
+        }
+    }
     check_contacts();
 }
 
@@ -346,6 +380,7 @@ void SingleRun::check_contacts()
 void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
 {
     std::vector<lie::Observer*> observers = recorder.observers();
+    if (events) observers.insert(observers.begin(), events.get());
     if (refined) observers.push_back(refined.get());
     Progress line(options.quiet, result.end, grid.steps, march.number());
     const bool watch_clock = line.shown() || options.checkpoint > 0;
@@ -383,23 +418,43 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
             io::message(!scheme.resumes ? "hilda: interrupted\n"
                                         : "hilda: interrupted; --resume continues from the checkpoint in " +
                                               directory + '\n');
+    } catch (const StoppedByEvent& stop) {
+        line.clear();
+        end_at(stop, march, recorder);
     } catch (const lie::NumericalFailure& failure) {
         count(march, recorder);
         line.clear();
-        failed(failure, march);
-        if (recorder.last_node() == march.number()) return;
         // The start node of the failed step is the last valid node, and may be an output row. The status
-        // stays that of the step if a check of this node fails as well.
-        try {
-            march.finish(observers);
-        } catch (const lie::NodeFailure&) {
-        }
+        // stays that of the step if a check of this node fails as well. The run is complete if it ends at an
+        // event before this node.
+        if (recorder.last_node() != march.number()) try {
+                march.finish(observers);
+            } catch (const StoppedByEvent& stop) {
+                return end_at(stop, march, recorder);
+            } catch (const lie::NumericalFailure&) {
+            }
+        failed(failure, march);
+    }
+}
+
+/// The state at the event becomes the last row.
+void SingleRun::end_at(const StoppedByEvent& stop, const lie::March& march, Recorder& recorder)
+{
+    count(march, recorder);
+    result.t = stop.x.t;
+    result.stopped_by = stop.event;
+    grid.steps = march.number();
+    try {
+        recorder.accepted(stop.x, march.number(), march.iterations_of_last_step());
+    } catch (const lie::NodeFailure& failure) {
+        failed(failure, march);
     }
 }
 
 std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) const
 {
     Checkpoint c = recorder.checkpoint(march);
+    if (events) c.sinks["events"] = events->save();
     c.settings = settings;
     c.end = result.end;
     c.interval = grid.interval;
@@ -435,6 +490,8 @@ void SingleRun::finish(const Recorder& recorder)
 {
     result.files = recorder.files();
     result.files.insert(result.files.begin(), "model.json");
+    if (events)
+        for (const std::string& file : events->files()) result.files.push_back(file);
     result.files.emplace_back("summary.json");
     const bool ok = result.status == "ok";
     // In this order, so that a run that is killed here can be resumed.

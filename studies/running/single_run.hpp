@@ -10,6 +10,7 @@
 #include "lie/trajectory.hpp"
 #include "studies/program/run_model.hpp"
 #include "studies/running/checkpoint.hpp"
+#include "studies/running/events/run_events.hpp"
 #include "studies/running/progress.hpp"
 #include "studies/running/recorder.hpp"
 #include "studies/running/summary.hpp"
@@ -48,12 +49,14 @@ private:
     void load_checkpoint();
     /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
     void check_continues() const;
+    std::unique_ptr<RunEvents> make_events(const lie::Settings& integrator_settings, RunTables& tables) const;
     void clear_directory() const;
     RunSettings settings_of_run();
     /// The text of model.json
     std::string text_of_model() const;
     void march(lie::Integrator& integrator, Recorder& recorder);
     void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
+    void end_at(const StoppedByEvent& stop, const lie::March& march, Recorder& recorder);
     std::string checkpoint(const lie::March& march, Recorder& recorder) const;
     void save_checkpoint(const lie::March& march, Recorder& recorder);
     void count(const lie::March& march, const Recorder& recorder);
@@ -75,6 +78,7 @@ private:
     bool extends = false;  ///< continues a run that has ended
     std::string
         final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
+    std::unique_ptr<RunEvents> events;     ///< of a model with events
     std::unique_ptr<RefinedRuns> refined;  ///< of --error
     double last_node = 0;                  ///< time of the last accepted node [s]
     Clock::time_point begin;

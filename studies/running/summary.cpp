@@ -71,6 +71,15 @@ io::Json summary(const RunResult& r)
                                        {"lambda_N", c.lambda_N}});
         }
     }
+    if (!r.located.empty()) {
+        out["events"] = io::Json::array();
+        for (const EventCount& e : r.located) {
+            io::Json event = {{"name", e.name}, {"count", e.count}};
+            if (e.count > 0) event["last"] = e.last;
+            out["events"].push_back(event);
+        }
+    }
+    if (!r.stopped_by.empty()) out["stopped_by"] = r.stopped_by;
     if (!r.events.empty()) {
         constexpr size_t most = 1000;  // a bouncing ball that comes to rest causes many events
         out["contact_events"] = {{"count", r.events.size()}, {"first", io::Json::array()}};
@@ -118,6 +127,12 @@ void print(const RunResult& r, std::ostream& out)
         line(k == 0 ? "contacts" : "",
              fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k], r.invariants.contact[k].F_N_least,
                          r.invariants.contact[k].F_N_most));
+    for (const EventCount& e : r.located)
+        line(&e == r.located.data() ? "events" : "",
+             e.name + ": " +
+                 (e.count == 0 ? "none"
+                               : fmt::format("{}, the last at t = {:.12g} s{}", e.count, e.last,
+                                             e.name == r.stopped_by ? ", which ends the run" : "")));
     line("orthogonality", fmt::format("{:.1e} largest |A'A - I|", r.invariants.orthogonality));
     if (r.error) {
         line("errors", r.error->text());

@@ -16,6 +16,13 @@
 
 namespace hilda::studies {
 
+/// What a run reports about an event of the model file
+struct EventCount {
+    std::string name;
+    long count = 0;
+    double last = 0;  ///< time of the last one [s]
+};
+
 struct RunResult {
     std::string status = "ok", message;
     int exit_code = 0;
@@ -35,6 +42,8 @@ struct RunResult {
         double speed;  ///< approach velocity [m/s]
     };
     std::vector<Event> events;
+    std::vector<EventCount> located;  ///< the events of the model file
+    std::string stopped_by;           ///< name of the event that ended the run
     dae::StartReport start;
     std::vector<std::string> warnings, set;
     std::vector<std::pair<std::string, double>> parameters;  ///< of the model

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/events.hpp"
+
+#include "lie/integrator.hpp"
+#include "lie/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hilda::lie {
+
+namespace {
+
+int sign_of(double g) { return std::isfinite(g) ? (g > 0) - (g < 0) : EventSearch::unknown; }
+
+/// Whether a change between two signs is an event of this direction. A zero at a node belongs to the step
+/// that ends there.
+bool counts(Event::Direction direction, int before, int now)
+{
+    if (before == EventSearch::unknown || now == EventSearch::unknown || before == 0 || now == before)
+        return false;
+    return direction == Event::both || (direction == Event::rising) == (before < 0);
+}
+
+}  // namespace
+
+EventSearch::~EventSearch() = default;
+
+EventSearch::EventSearch(std::vector<Event> events, Make of) : all(std::move(events)), make(std::move(of))
+{
+    saved.sign.assign(all.size(), unknown);
+    g.assign(all.size(), std::numeric_limits<double>::quiet_NaN());
+}
+
+bool EventSearch::node(const State& to, const Report& report)
+{
+    const double h = saved.node.body.empty() ? 0 : to.t - saved.node.t;
+    zeros.clear();
+    integrator.reset();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const double now = all[k].value(to);
+        const int sign = sign_of(now);
+        if (h > 0 && counts(all[k].direction, saved.sign[k], sign)) {
+            if (std::isnan(g[k])) g[k] = all[k].value(saved.node);  // of a resumed run
+            zeros.push_back({sign == 0 ? h : locate(all[k], g[k], now, h), k, saved.sign[k] < 0});
+        }
+        g[k] = now;
+        // A function that is zero at a node has passed through it: the next sign is the opposite one, or the
+        // function touches zero.
+        if (sign == 0 && h > 0 && saved.sign[k] != unknown)
+            saved.sign[k] = -saved.sign[k];
+        else if (sign != unknown)
+            saved.sign[k] = sign;
+    }
+    std::stable_sort(zeros.begin(), zeros.end(), [](const Zero& a, const Zero& b) { return a.tau < b.tau; });
+    for (stop = 0; stop < zeros.size(); ++stop) {
+        const Zero& zero = zeros[stop];
+        set_state(zero.tau, h);
+        report({zero.event, zero.rises, x});
+        if (all[zero.event].stops) return true;
+    }
+    saved.node = to;
+    return false;
+}
+
+/// Time from the last node to the zero of g [s], by regula falsi with the Illinois modification (Dowell and
+/// Jarratt 1971) and a bisection at each third step. The result is the end of the bracket at which g has its
+/// new sign.
+double EventSearch::locate(const Event& event, double g_begin, double g_end, double h)
+{
+    double a = 0, b = h, g_a = g_begin, g_b = g_end;
+    const double tolerance = 4 * std::numeric_limits<double>::epsilon() * (std::abs(saved.node.t) + h);
+    const bool ends_positive = g_end > 0;
+    int side = 0;
+    for (int k = 1; b - a > tolerance && k < 200; ++k) {
+        double c = k % 3 == 0 ? a + (b - a) / 2 : a - g_a * (b - a) / (g_b - g_a);
+        if (!(c > a && c < b)) c = a + (b - a) / 2;
+        // Not closer to an end than the tolerance: the bracket then shrinks from both sides.
+        c = std::clamp(c, a + std::min(tolerance, (b - a) / 4), b - std::min(tolerance, (b - a) / 4));
+        set_state(c, h);
+        const double g_c = event.value(x);
+        if ((g_c > 0) == ends_positive && g_c != 0) {
+            b = c, g_b = g_c;
+            if (side == 1) g_a /= 2;
+            side = 1;
+        } else {
+            a = c, g_a = g_c;
+            if (side == -1) g_b /= 2;
+            side = -1;
+        }
+    }
+    return b;
+}
+
+/// Sets x to the complete state at this time after the last node.
+void EventSearch::set_state(double tau, double h)
+{
+    // Accelerations follow from differences of velocities over tau.
+    constexpr double least = 1e-8;
+    tau = std::max(tau, least * h);
+    if (!integrator) integrator = make();
+    x = saved.node;
+    if (!integrator->chooses_internal_steps()) x.history.resize(0);
+    integrator->step(x, tau);
+    x.t = saved.node.t + tau;
+    if (!integrator->chooses_internal_steps()) integrator->system().accepted(saved.node, x);
+    if (integrator->is_staggered()) {
+        after = x;
+        integrator->step(after, tau);
+        integrator->fill_node(x, after);
+    }
+    x.history.resize(0);
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/running/events/run_events.hpp"
+
+#include "io/archive.hpp"
+#include "studies/running/checkpoint.hpp"
+
+namespace hilda::studies {
+
+namespace {
+
+std::unique_ptr<RunTable> table_of(const ColumnGroup& bodies, RunTables& tables)
+{
+    std::vector<TableColumn> columns = {
+        {{"t", "s", "time"}},
+        {{"event", "", "number of the event in the list of the model file, from 0"}, true},
+        {{"direction", "", "1: the formula rises, -1: it falls"}, true}};
+    for (const dae::Quantity& q : bodies.columns) columns.push_back({q});
+    return tables.table("events", columns);
+}
+
+}  // namespace
+
+std::vector<const dae::Output*> outputs_and_events(const dae::Description& d)
+{
+    std::vector<const dae::Output*> all;
+    for (const auto& output : d.outputs) all.push_back(output.get());
+    for (const dae::Event& event : d.events) all.push_back(event.value.get());
+    return all;
+}
+
+RunEvents::RunEvents(const dae::Description& description, lie::EventSearch::Make make, RunTables& tables)
+    : description(description), formulas(*description.model, outputs_and_events(description)),
+      values(formulas.columns.size()),
+      search(
+          [&] {
+              std::vector<lie::Event> events;
+              for (size_t k = 0; k < description.events.size(); ++k) {
+                  const dae::Event& event = description.events[k];
+                  const size_t column = formulas.columns.size() - description.events.size() + k;
+                  const auto value = [this, column](const lie::State& x) {
+                      formulas.values(x, values.data());
+                      return values[column];
+                  };
+                  events.push_back({event.value->name, value, event.direction, event.stops});
+              }
+              return events;
+          }(),
+          std::move(make)),
+      bodies(body_columns(*description.model)), table(table_of(*bodies, tables)),
+      row(3 + bodies->columns.size())
+{
+    for (const dae::Event& event : description.events) counted.push_back({.name = event.value->name});
+}
+
+void RunEvents::open(const std::string& saved, const std::string& file)
+{
+    if (saved.empty()) return table->open();
+    io::Archive a(saved, file);
+    transfer(a);
+    a.end();
+}
+
+std::string RunEvents::save()
+{
+    table->sync();
+    io::Archive a;
+    transfer(a);
+    return a.bytes();
+}
+
+void RunEvents::transfer(io::Archive& a)
+{
+    transfer_state(a, search.saved.node);
+    a.list(search.saved.sign);
+    a.check(search.saved.sign.size() == counted.size(), "wrong number of events");
+    for (EventCount& event : counted) a.value(event.count), a.value(event.last);
+    formulas.transfer(a);
+    table->transfer(a);
+}
+
+void RunEvents::accepted(const lie::State& node, long, int)
+{
+    formulas.node(node);
+    if (search.node(node, [this](const lie::EventFound& found) { add_row(found); }))
+        throw StoppedByEvent{counted[search.stopping()].name, search.stopped()};
+}
+
+void RunEvents::add_row(const lie::EventFound& found)
+{
+    EventCount& event = counted[found.event];
+    ++event.count, event.last = found.x.t;
+    row[0] = found.x.t, row[1] = static_cast<double>(found.event), row[2] = found.rises ? 1 : -1;
+    bodies->values(found.x, row.data() + 3);
+    table->row(row);
+}
+
+std::string RunEvents::fault() const
+{
+    for (size_t k = 0; k < counted.size(); ++k)
+        if (!search.was_finite(k))
+            return description.events[k].value->place + ": the formula of the event '" + counted[k].name +
+                   "' is not finite at any node of the run";
+    return {};
+}
+
+}  // namespace hilda::studies

@@ -10,6 +10,8 @@
 
 namespace hilda::dae {
 
+class Driver;
+
 /// A scalar row Φ(r, A, t) = 0 between the bodies i and j. Derive from Block to add a constraint.
 ///
 /// A block is a constraint of one position row without algebraic variables. The functions without a row
@@ -39,6 +41,10 @@ public:
     {
         return Constraint::gamma_variation(x, 0);
     }
+
+    /// The function of time f(t) that the row prescribes; nullptr if there is none. The load -λ of the row
+    /// and ḟ are conjugate: their product is the power of the driver on the bodies.
+    virtual const Driver* prescribed() const { return nullptr; }
 
     /// Sparsity pattern of the first variation: bits 0 to 5 for (r_i, pi_i), bits 6 to 11 for (r_j, pi_j). A
     /// bit is clear if the derivative is zero in every state.

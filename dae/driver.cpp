@@ -3,7 +3,10 @@
 
 #include "dae/driver.hpp"
 
+#include "dae/curves/sampled_curve.hpp"
 #include "io/json.hpp"
+
+#include <utility>
 
 namespace hilda::dae {
 
@@ -15,8 +18,19 @@ Driver::Driver(std::string_view text) : expression(std::make_shared<const io::Ex
     if (constant) value = expression->value(0);
 }
 
+Driver::Driver(std::shared_ptr<const SampledCurve> samples) : constant(false), curve(std::move(samples)) {}
+
+io::Jet Driver::jet(double t) const { return curve ? curve->jet(t) : expression->jet(t); }
+
+const std::string& Driver::text() const
+{
+    static const std::string none;
+    return expression ? expression->text() : none;
+}
+
 std::optional<Driver> Driver::complement() const
 {
+    if (curve) return std::nullopt;
     const std::string_view outer = expression->outermost();
     if (outer != "cos" && outer != "sin") return std::nullopt;
     // Only blanks, '(' and '+' can precede the outermost function in the text.

@@ -12,7 +12,10 @@
 
 namespace hilda::dae {
 
-/// A prescribed function of time: a constant, by default 0, or an io::Expression in t.
+class SampledCurve;
+
+/// A prescribed function of time: a constant, by default 0, an io::Expression in t, or a curve through
+/// samples.
 ///
 /// The constructors throw io::ExpressionError for an invalid expression and for a constant that is not
 /// finite.
@@ -20,15 +23,17 @@ class Driver {
 public:
     Driver(double constant = 0);
     Driver(std::string_view text);
+    explicit Driver(std::shared_ptr<const SampledCurve> curve);
 
-    double f(double t) const { return constant ? value : expression->value(t); }
-    double fdot(double t) const { return constant ? 0 : expression->jet(t).fdot; }
-    double fddot(double t) const { return constant ? 0 : expression->jet(t).fddot; }
-    /// f, ḟ and f̈ together
-    io::Jet jet(double t) const { return expression->jet(t); }
+    double f(double t) const { return constant ? value : curve ? jet(t).f : expression->value(t); }
+    double fdot(double t) const { return constant ? 0 : jet(t).fdot; }
+    double fddot(double t) const { return constant ? 0 : jet(t).fddot; }
+    /// f, ḟ and f̈ together. A curve throws lie::NumericalFailure outside of its samples.
+    io::Jet jet(double t) const;
 
     bool is_constant() const { return constant; }
-    const std::string& text() const { return expression->text(); }
+    /// Of the expression; empty for a curve
+    const std::string& text() const;
 
     /// sin(g) for f = cos(g) and cos(g) for f = sin(g), if g is not constant. Otherwise empty.
     ///
@@ -40,7 +45,8 @@ private:
     // Most drivers are constant and are evaluated in every iteration. The value is stored for them.
     bool constant;
     double value = 0;
-    std::shared_ptr<const io::Expression> expression;
+    std::shared_ptr<const io::Expression> expression;  ///< nullptr: a curve
+    std::shared_ptr<const SampledCurve> curve;
 };
 
 }  // namespace hilda::dae

@@ -2,8 +2,14 @@
 /// Reading of drivers, and the registered reader of contacts.
 #include "dae/model_types.hpp"
 
+#include "dae/curves/sampled_curve.hpp"
 #include "dae/driver.hpp"
+#include "io/files.hpp"
+#include "io/formats/csv.hpp"
 #include "io/jet.hpp"
+#include "io/nearest.hpp"
+#include "io/option_values.hpp"
+#include "lie/check.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -12,8 +18,78 @@
 
 namespace hilda::dae {
 
+namespace {
+
+struct Samples {
+    std::vector<double> t, f;
+};
+
+/// The columns t and `column` of a CSV file
+Samples read_samples(ObjectReader& o, const std::string& file, const std::string& column)
+{
+    constexpr std::size_t most = std::size_t{64} << 20;
+    Samples all;
+    try {
+        io::read_csv(io::read_file(file, most), file, [&](const io::CsvRow& row) {
+            for (const auto& [name, to] : {std::pair(std::string("t"), &all.t), {column, &all.f}}) {
+                const auto at = std::find(row.names.begin(), row.names.end(), name);
+                if (at == row.names.end())
+                    o.fail("column", file + " has no column" +
+                                         io::with_nearest(name, std::vector<std::string>(row.names.begin(),
+                                                                                         row.names.end())));
+                const std::string_view cell = row.cells[static_cast<std::size_t>(at - row.names.begin())];
+                const std::optional<double> value = io::number_in<double>(cell);
+                if (!value)
+                    o.fail("file", row.place + ": " + name + " must be a number, got " +
+                                       described(Json(std::string(cell))));
+                to->push_back(*value);
+            }
+        });
+    } catch (const io::IoError& e) {
+        o.fail("file", e.what());
+    } catch (const io::InvalidInput& e) {
+        o.fail("file", e.what());
+    }
+    return all;
+}
+
+std::vector<double> list_of_numbers(ObjectReader& o, std::string_view key)
+{
+    return o.numbers(key, o.list(key, true).size());
+}
+
+/// A motion given by samples: {"file": ..., "column": ...} or {"t": [...], "f": [...]}. The canonical form
+/// has the numbers.
+Driver read_samples(ObjectReader& of, std::string_view key)
+{
+    ObjectReader o = of.object(key);
+    Samples samples;
+    o.exclude("file", "t"), o.exclude("file", "f");
+    if (o.has("file")) {
+        const std::string file = o.file("file");
+        samples = read_samples(o, file, o.text("column"));
+    } else {
+        samples = {list_of_numbers(o, "t"), list_of_numbers(o, "f")};
+    }
+    o.finish();
+    if (!samples.t.empty() && samples.t.front() > 0)
+        of.fail(key, "the samples must begin at t = 0 s or before, got " + shortest(samples.t.front()));
+    Json recorded = Json::object();
+    recorded["t"] = Json::List(samples.t.begin(), samples.t.end());
+    recorded["f"] = Json::List(samples.f.begin(), samples.f.end());
+    of.record(key, std::move(recorded));
+    try {
+        return Driver(std::make_shared<SampledCurve>(samples.t, samples.f));
+    } catch (const lie::InvalidInput& e) {
+        of.fail(key, e.what());
+    }
+}
+
+}  // namespace
+
 Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback)
 {
+    if (const Json* v = o.find(key); v != nullptr && v->members() != nullptr) return read_samples(o, key);
     const std::string text = o.formula(key, fallback);
     try {
         Driver f(text);

@@ -16,7 +16,7 @@ const TypeSchema schema = {
     .keys = {{"c", "Direction c [-], in the global frame. It is not normalised.",
               R"("$ref": "#/$defs/direction", "examples": [[1, 0, 0]])", true},
              {"f", "Prescribed value f(t) [m], times the length of c.",
-              R"("$ref": "#/$defs/formula", "default": "0", "examples": ["0.2*t"])"}},
+              R"("$ref": "#/$defs/motion", "default": "0", "examples": ["0.2*t"])"}},
     .example = R"("body_i": "ground", "body_j": "slider", "c": [1, 0, 0], "f": "0.2*t")"};
 
 const bool registered = io::Registry<ConstraintType>::add(

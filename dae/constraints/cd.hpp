@@ -60,6 +60,8 @@ public:
         return g;
     }
 
+    const Driver* prescribed() const override { return f.is_constant() ? nullptr : &f; }
+
     unsigned nonzero() const override
     {
         unsigned axes = 0;

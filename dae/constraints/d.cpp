@@ -14,7 +14,7 @@ const TypeSchema schema = {
         "from point P to point Q.",
     .parts = {"points", "derivatives"},
     .keys = {{"f", "Square of the distance, f(t) [m^2]. It must be positive.",
-              R"("$ref": "#/$defs/formula", "exclusiveMinimum": 0, )"
+              R"("$ref": "#/$defs/motion", "exclusiveMinimum": 0, )"
               R"("examples": [0.25, "(0.5 + 0.1*sin(t))^2"])",
               true}},
     .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"

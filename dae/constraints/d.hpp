@@ -80,6 +80,8 @@ public:
         return g;
     }
 
+    const Driver* prescribed() const override { return f.is_constant() ? nullptr : &f; }
+
     unsigned nonzero() const override
     {
         return 0b111 | cross_product_pattern(s_bar_i) << 3 | 0b111 << 6 | cross_product_pattern(s_bar_j) << 9;

@@ -19,7 +19,7 @@ const TypeSchema schema = {
              {"a_bar_j", "Vector a_j [-], in the frame of body j. It is not normalised.",
               R"("$ref": "#/$defs/direction", "examples": [[0, 1, 0]])", true},
              {"f", "Prescribed value f(t) [-]. At the start |f| must be less than |a_i| |a_j|.",
-              R"("$ref": "#/$defs/formula", "default": "0", )"
+              R"("$ref": "#/$defs/motion", "default": "0", )"
               R"-("examples": ["cos(pi/2 + 0.1*t)"])-"}},
     .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [1, 0, 0], )"
                R"-("a_bar_j": [0, 1, 0], "f": "sin(0.1*t)")-"};

@@ -75,6 +75,8 @@ public:
         return g;
     }
 
+    const Driver* prescribed() const override { return f.is_constant() ? nullptr : &f; }
+
     unsigned nonzero() const override
     {
         return cross_product_pattern(a_bar_i) << 3 | cross_product_pattern(a_bar_j) << 9;

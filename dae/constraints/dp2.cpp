@@ -16,7 +16,7 @@ const TypeSchema schema = {
     .keys = {{"a_bar_i", "Vector a_i [-], in the frame of body i. It is not normalised.",
               R"("$ref": "#/$defs/direction", "examples": [[0, 0, 1]])", true},
              {"f", "Prescribed value f(t) [m], times the length of a_i.",
-              R"-("$ref": "#/$defs/formula", "default": "0", "examples": ["0.1*sin(t)"])-"}},
+              R"-("$ref": "#/$defs/motion", "default": "0", "examples": ["0.1*sin(t)"])-"}},
     .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [0, 0, 1], )"
                R"("s_bar_p_i": [0, 0.1, 0])"};
 

@@ -90,6 +90,8 @@ public:
         return g;
     }
 
+    const Driver* prescribed() const override { return g.is_constant() ? nullptr : &g; }
+
     unsigned nonzero() const override
     {
         return (cross_product_pattern(u_bar) | cross_product_pattern(u_bar_prime)) << 3 |

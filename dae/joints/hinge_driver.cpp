@@ -39,7 +39,7 @@ const TypeSchema schema = {
         "parallel at the start and point the same way.",
     .parts = {"axes"},
     .keys = {{"angle", "Prescribed angle [rad], positive by the right-hand rule about the axis of body i.",
-              R"("$ref": "#/$defs/formula", "examples": ["2*pi*t"])", true}},
+              R"("$ref": "#/$defs/motion", "examples": ["2*pi*t"])", true}},
     .example = R"("body_i": "ground", "body_j": "crank", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0], "angle": "2*pi*t")"};
 

@@ -59,6 +59,7 @@ public:
         add_run();
         add_cosim();
         add_kinematics();
+        add_inverse();
         add_check();
         add_models();
         add_integrators();
@@ -132,6 +133,15 @@ private:
                  "compute the motion and the driver loads of a mechanism without degrees of freedom",
                  [this] { return run_kinematics(kinematics); }),
             kinematics);
+    }
+
+    void add_inverse()
+    {
+        inverse.command_line = command_line_text;
+        add_inverse_options(
+            *add("inverse", "compute the loads of drivers that give joints a prescribed motion",
+                 [this] { return run_kinematics(inverse); }),
+            inverse);
     }
 
     void add_check()
@@ -315,7 +325,7 @@ private:
 
     RunArguments run;
     CosimOptions cosim;
-    KinematicsOptions kinematics;
+    KinematicsOptions kinematics, inverse;
     CheckOptions check;
     StudyOptions study;
     CollectOptions collected;

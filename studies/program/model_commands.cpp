@@ -134,6 +134,18 @@ void add_kinematics_options(CLI::App& c, KinematicsOptions& o)
     c.add_flag("--quiet", o.quiet, "print no result and no warnings");
 }
 
+void add_inverse_options(CLI::App& c, KinematicsOptions& o)
+{
+    o.inverse = true;
+    add_kinematics_options(c, o);
+    value(c, "--motion", "FILE",
+          "CSV file with a column t [s] and one for each motion: of a driver, or of a revolute [rad] or "
+          "translational [m] joint, from the start; default: the drivers of the model",
+          assign(o.motion, [](const std::string&, const std::string& text) { return text; }));
+    add_no_plot(c, "do not draw drives.png", o.plot);
+    add_figure_format(c, o.figure_formats);
+}
+
 void add_check_options(CLI::App& c, CheckOptions& o)
 {
     add_model(c, o.model);

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "studies/cosim/run_cosim.hpp"
+#include "studies/kinematics/kinematics.hpp"
 #include "studies/program/check_model.hpp"
-#include "studies/program/kinematics.hpp"
 #include "studies/program/run_model.hpp"
 
 #include <CLI/CLI.hpp>
@@ -31,6 +31,8 @@ RunOptions run_options(const RunArguments& arguments);
 void add_cosim_options(CLI::App& command, CosimOptions& to);
 
 void add_kinematics_options(CLI::App& command, KinematicsOptions& to);
+/// hilda inverse
+void add_inverse_options(CLI::App& command, KinematicsOptions& to);
 void add_check_options(CLI::App& command, CheckOptions& to);
 
 }  // namespace hilda::studies

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/kinematics/prescribed_motion.hpp"
+
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/formats/csv.hpp"
+#include "io/json.hpp"
+#include "io/json_source.hpp"
+#include "io/nearest.hpp"
+#include "io/option_values.hpp"
+#include "lie/so3.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace hilda::studies {
+
+namespace {
+
+constexpr const char* time_column = "t";
+
+struct Columns {
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<double>> values;
+};
+
+Columns read_columns(const std::string& file)
+{
+    constexpr std::size_t most = std::size_t{1} << 30;
+    Columns all;
+    io::read_csv(io::read_file(file, most), file, [&](const io::CsvRow& row) {
+        if (all.names.empty()) all.names.assign(row.names.begin(), row.names.end());
+        for (std::size_t k = 0; k < row.cells.size(); ++k) {
+            const std::optional<double> value = io::number_in<double>(row.cells[k]);
+            if (!value)
+                throw io::InvalidInput(row.place + ": " + all.names[k] + " must be a number, got '" +
+                                       std::string(row.cells[k]) + "'");
+            all.values[all.names[k]].push_back(*value);
+        }
+    });
+    if (!all.values.contains(time_column)) throw io::InvalidInput(file + ": there must be a column t [s]");
+    if (all.names.size() < 2)
+        throw io::InvalidInput(file + ": there must be a column for a joint or a driver, besides t");
+    return all;
+}
+
+io::Json samples(const std::vector<double>& t, const std::vector<double>& f, double offset = 0)
+{
+    io::Json::List values;
+    for (const double x : f) values.emplace_back(x + offset);
+    io::Json motion = io::Json::object();
+    motion["t"] = io::Json::List(t.begin(), t.end());
+    motion["f"] = std::move(values);
+    return motion;
+}
+
+std::string text_of(const io::Json& object, const char* key)
+{
+    const io::Json::Member* member = object.member(key);
+    const std::string* text = member == nullptr ? nullptr : member->value.string();
+    return text == nullptr ? "" : *text;
+}
+
+lie::Vec3 vector_of(const io::Json& object, const char* key)
+{
+    lie::Vec3 v = lie::Vec3::Zero();
+    if (const io::Json::Member* member = object.member(key); member != nullptr && member->value.list())
+        for (int k = 0; k < 3; ++k) v[k] = *(*member->value.list())[static_cast<std::size_t>(k)].number();
+    return v;
+}
+
+lie::Motion motion_of(const dae::Description& d, const std::string& body)
+{
+    for (int b = 0; b < d.model->bodies(); ++b)
+        if (d.model->body_name(b) == body) return d.x.body[static_cast<std::size_t>(b)];
+    return {};  // the ground
+}
+
+/// The driver of a revolute or translational joint, from the canonical form of the joint
+io::Json drive_of(const dae::Description& d, const io::Json& joint, const std::vector<double>& t,
+                  const std::vector<double>& f)
+{
+    const bool rotates = text_of(joint, "type") == "revolute";
+    io::Json drive = {{"name", text_of(joint, "name") + " drive"},
+                      {"type", rotates ? "hinge-driver" : "DP2"},
+                      {"body_i", text_of(joint, "body_i")},
+                      {"body_j", text_of(joint, "body_j")}};
+    if (rotates) {
+        drive["axis_bar_i"] = joint.member("axis_bar_i")->value;
+        drive["axis_bar_j"] = joint.member("axis_bar_j")->value;
+        drive["angle"] = samples(t, f);
+        return drive;
+    }
+    const lie::Motion i = motion_of(d, text_of(joint, "body_i")), j = motion_of(d, text_of(joint, "body_j"));
+    const lie::Vec3 axis = vector_of(joint, "axis_bar_i").normalized();
+    const double now =
+        (i.A * axis)
+            .dot(j.r + j.A * vector_of(joint, "s_bar_q_j") - i.r - i.A * vector_of(joint, "s_bar_p_i"));
+    drive["a_bar_i"] = {axis[0], axis[1], axis[2]};
+    for (const char* key : {"s_bar_p_i", "s_bar_q_j"})
+        if (joint.member(key) != nullptr) drive[key] = joint.member(key)->value;
+    drive["f"] = samples(t, f, now - f.front());
+    return drive;
+}
+
+}  // namespace
+
+dae::Description with_motion(const dae::Description& d, const std::string& file)
+{
+    const Columns columns = read_columns(file);
+    const std::vector<double>& t = columns.values.at(time_column);
+    io::Json root = io::JsonSource(d.text, d.name).root;
+    std::vector<std::string> known;
+    auto& constraints = std::get<io::Json::List>(root["constraints"].value);
+    for (const io::Json& c : constraints) known.push_back(text_of(c, "name"));
+    for (const std::string& name : columns.names) {
+        if (name == time_column) continue;
+        const auto at = std::find(known.begin(), known.end(), name);
+        if (at == known.end())
+            throw io::InvalidInput(file + ": the model has no joint or driver" +
+                                   io::with_nearest(name, known));
+        io::Json& constraint = constraints[static_cast<std::size_t>(at - known.begin())];
+        const std::string type = text_of(constraint, "type");
+        const std::vector<double>& f = columns.values.at(name);
+        const bool is_driver = constraint.member("f") != nullptr || constraint.member("angle") != nullptr;
+        if (is_driver)
+            constraint[constraint.member("f") != nullptr ? "f" : "angle"] = samples(t, f);
+        else if (type == "revolute" || type == "translational")
+            constraints.push_back(drive_of(d, io::Json(constraint), t, f));
+        else
+            throw io::InvalidInput(file + ": column " + name +
+                                   ": a motion can be that of a driver, a revolute "
+                                   "or a translational joint, and the type of '" +
+                                   name + "' is " + type);
+    }
+    root["end"] = t.back();
+    return dae::read_model(io::written(root), d.name + " with the motion of " + file);
+}
+
+}  // namespace hilda::studies

@@ -16,9 +16,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> commands = {"run",    "cosim", "check",   "models",   "integrators",
-                                           "schema", "study", "collect", "granular", "plot",
-                                           "info",   "new",   "help"};
+const std::vector<std::string> commands = {"run",      "cosim",       "kinematics", "inverse", "check",
+                                           "models",   "integrators", "schema",     "study",   "collect",
+                                           "granular", "plot",        "info",       "new",     "help"};
 
 /// All help texts, by the call that prints them
 std::vector<std::pair<std::string, std::string>> help_texts(const Scratch& in)
@@ -142,6 +142,7 @@ TEST_CASE("the files of a study are those that its help names", "[studies][help]
          "rA-half-1"},
         {"timing", "--problem", "double_pendulum", "--end", "0.1", "--steps", "1e-2", "--repeats", "1"},
         {"long-time", "--problem", "heavy_top", "--end", "0.2", "--integrator", "rA-rattle"},
+        {"tolerance", "--problem", "double_pendulum", "--end", "0.1", "--integrator", "rA-rattle"},
         {"friction", "--problem", "brick"},
         {"granular-oblique"},
         {"evolving-friction", "--end", "0.1"}};

@@ -57,10 +57,11 @@ public:
         else
             a_n = x_n.history;
         kappa = beta * h * h * (1 - alpha_f) / (1 - alpha_m);
+        K.set_shift(shift(h));
         K.assemble(x_n);                 // the Newton matrix, frozen at t_n
         predict(h, 0.5 * h * h, kappa);  // the increment of constant accelerations
         x.t = x_n.t + h;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
+        for (int k = 1; k <= most_iterations; ++k) {
             place(x, h);
             set_residual(x);
             K.solve(e);
@@ -90,9 +91,10 @@ private:
             body.omega_bar += h * body.omegadot_bar;
         }
         model.update_alpha(ahead);
+        K.set_shift(shift(h));
         K.assemble(ahead);
         set_load_terms(model, K, ahead, loads, e);
-        K.solve(e);
+        K.solve_in_step(e);
         for (int i = 0; i < bodies; ++i) {
             a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
             a_n.segment<6>(6 * i) +=
@@ -146,6 +148,7 @@ const bool registered = register_scheme<GeneralisedAlpha>(
      .source = "Bruls, Cardona, Arnold (2012)",
      .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
+     .redundant = true,
      .rho_infinity = true});
 
 }  // namespace

@@ -18,10 +18,10 @@ int BackwardEulerStep::step(State& x, double h)
 {
     x_n = x;
     Attempt attempt(x, x_n);
-    begin();
+    begin(h);
     predict(0, 1, 1);
     x.t = x_n.t + h;
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         place(x, h);
         set_residual(x, h);
         solve(x, h);

@@ -20,8 +20,8 @@ public:
 protected:
     BackwardEulerStep(const System& model, const Settings& settings, std::string name);
 
-    /// Called at the beginning of a step from x_n
-    virtual void begin() {}
+    /// Called at the beginning of a step h from x_n
+    virtual void begin(double /*h*/) {}
     /// e ← N⁻¹ e, with the Newton matrix N of the iterate x
     virtual void solve(const State& x, double h) = 0;
 

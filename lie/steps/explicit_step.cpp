@@ -35,7 +35,7 @@ void ExplicitStep::place(State& x, const Eigen::VectorXd& d)
 
 int ExplicitStep::finish(State& x, const std::string& scheme)
 {
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         set_position_residual(model, K, x, e);
         K.solve(e);
         move(K, x, e);
@@ -44,6 +44,7 @@ int ExplicitStep::finish(State& x, const std::string& scheme)
         set_momenta(model, x, e);
         solve_velocities(model, K, x, e);
         set_accelerations(x);
+        minimise_multipliers(x);
         return k;
     }
     no_convergence(scheme, correction, x);

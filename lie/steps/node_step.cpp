@@ -18,6 +18,7 @@ void NodeStep::assemble_once(const State& x)
     at.t = std::numeric_limits<double>::quiet_NaN();  // in case assemble() throws
     K.assemble(x);
     at = x;
+    shift_at = K.used_shift();
 }
 
 void NodeStep::set_accelerations(State& x)
@@ -26,9 +27,18 @@ void NodeStep::set_accelerations(State& x)
     solve_accelerations(model, K, x, loads, e);
 }
 
+void NodeStep::minimise_multipliers(State& x)
+{
+    if (!K.keeps_redundant_rows()) return;
+    K.minimise_multipliers(e);
+    x.lambda = K.constraint_part(e);
+}
+
 bool NodeStep::assembled_at(const State& x) const
 {
-    if (at.t != x.t || at.discrete_state != x.discrete_state || at.alpha != x.alpha) return false;
+    if (shift_at != K.used_shift() || at.t != x.t || at.discrete_state != x.discrete_state ||
+        at.alpha != x.alpha)
+        return false;
     for (size_t i = 0; i < x.body.size(); ++i)
         if (at.body[i].r != x.body[i].r || at.body[i].A != x.body[i].A) return false;
     return true;

@@ -71,6 +71,7 @@ public:
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 refuse_whole_turns(x, h, "rA-genalpha");
                 x.history = a_next;
+                if (K.keeps_redundant_rows()) minimise_multipliers(x);
                 return done(attempt, k);
             }
         }
@@ -100,6 +101,14 @@ private:
             a_n.segment<6>(6 * i) +=
                 (alpha_m - alpha_f) * (e.segment<6>(6 * i) - a_n.segment<6>(6 * i)).eval();
         }
+    }
+
+    /// The multipliers of minimum norm at the end x of a step
+    void minimise_multipliers(State& x)
+    {
+        K.assemble(x);
+        K.minimise_multipliers(z);
+        x.lambda = K.constraint_part(z) / kappa;
     }
 
     /// The state x at t_{n+1}, and a_{n+1}, from z

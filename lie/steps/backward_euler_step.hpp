@@ -8,7 +8,10 @@
 
 #pragma once
 
+#include "lie/solver/saddle.hpp"
 #include "lie/steps/newton_step.hpp"
+
+#include <memory>
 
 namespace hilda::lie {
 
@@ -32,6 +35,7 @@ private:
     void set_residual(const State& x, double h);
 
     const std::string name;
+    std::unique_ptr<Saddle> of_multipliers;  ///< with redundant rows: for the multipliers of minimum norm
 };
 
 }  // namespace hilda::lie

@@ -60,6 +60,7 @@ public:
         K.set_shift(shift(h));
         K.assemble(x_n);                 // the Newton matrix, frozen at t_n
         predict(h, 0.5 * h * h, kappa);  // the increment of constant accelerations
+        start_redundant();
         x.t = x_n.t + h;
         for (int k = 1; k <= most_iterations; ++k) {
             place(x, h);

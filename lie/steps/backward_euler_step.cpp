@@ -21,6 +21,7 @@ int BackwardEulerStep::step(State& x, double h)
     Attempt attempt(x, x_n);
     begin(h);
     predict(0, 1, 1);
+    start_redundant();
     x.t = x_n.t + h;
     for (int k = 1; k <= most_iterations; ++k) {
         place(x, h);

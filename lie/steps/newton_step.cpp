@@ -65,6 +65,11 @@ void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
     algebraic_part(z).setZero();
 }
 
+void NewtonStep::start_redundant()
+{
+    if (model.keeps_redundant_rows()) constraint_part(z).setZero();
+}
+
 void NewtonStep::place_increments(State& x) const
 {
     for (int i = 0; i < bodies; ++i) {

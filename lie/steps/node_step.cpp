@@ -36,9 +36,8 @@ void NodeStep::minimise_multipliers(State& x)
 
 bool NodeStep::assembled_at(const State& x) const
 {
-    if (shift_at != K.used_shift() || at.t != x.t || at.discrete_state != x.discrete_state ||
-        at.alpha != x.alpha)
-        return false;
+    if (shift_at != K.used_shift()) return false;
+    if (at.t != x.t || at.discrete_state != x.discrete_state || at.alpha != x.alpha) return false;
     for (size_t i = 0; i < x.body.size(); ++i)
         if (at.body[i].r != x.body[i].r || at.body[i].A != x.body[i].A) return false;
     return true;

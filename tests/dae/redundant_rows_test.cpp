@@ -129,6 +129,27 @@ TEST_CASE("a mechanism with all rows passes its flat configuration with the orde
     CHECK(error_after_crossing("rA-rkmk-4", 1e-2) < 1e-6);
 }
 
+TEST_CASE("a start in a singular configuration follows the branch of the initial velocities",
+          "[dae][redundant]")
+{
+    // Two windows, flat, with the parallel branch of four_bars(): all cranks rotate with 1 rad/s.
+    Model model;
+    State x;
+    four_bars(model, x, 2);
+    for (int b = 0; b < model.bodies(); ++b) {
+        lie::Motion& body = x.body[b];
+        const bool crank = b < 3;
+        body.r = Vec3(crank ? b + 0.5 : b - 3 + 1.5, 0, 0);
+        body.A = Mat3::Identity();
+        body.rdot = (crank ? 0.5 : 1) * Y;
+    }
+    CHECK(start(model, x).rank == 27);
+    x = last(model, x, "rA-half-1-momentum", 0.1, 4e-3);
+    CHECK(x.body[0].A(1, 0) > 0.02);
+    for (const int b : {1, 2}) CHECK((x.body[b].A - x.body[0].A).norm() < 1e-6);
+    CHECK(model.largest_residual(x).value < 1e-6);
+}
+
 TEST_CASE("the motion does not depend on the order of the joints", "[dae][redundant]")
 {
     Model natural;

@@ -11,6 +11,9 @@ namespace {
 
 const Model& require_no_freedom(const Model& model)
 {
+    if (model.keep_redundant)
+        lie::reject("dae::Kinematics",
+                    "kinematic analysis needs independent rows; use \"redundant\": \"drop\"", "keep");
     const int degrees_of_freedom = 6 * model.bodies() - model.rows();
     if (degrees_of_freedom != 0)
         lie::reject("dae::Kinematics", "the model must have 0 degrees of freedom", degrees_of_freedom);

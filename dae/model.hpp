@@ -44,6 +44,9 @@ public:
 class Model final : public lie::System {
 public:
     Vec3 gravity = Vec3(0, 0, -9.81);  ///< [m/s²], global frame
+    /// Whether start() keeps redundant rows in the equations, instead of removing those that are redundant in
+    /// the initial state. Mechanisms that pass through singular configurations need it.
+    bool keep_redundant = false;
 
     /// Adds a body and returns its number. Throws lie::InvalidInput for a name that is empty, "ground" or
     /// already used, and for invalid mass properties (Body::validate).
@@ -193,6 +196,7 @@ public:
     /// Derivatives of the forces whose bodies() are known, by central differences
     lie::LoadVariation load_pattern() const override;
     void load_variation(const State& x, lie::LoadVariation& out) const override;
+    bool keeps_redundant_rows() const override { return keep_redundant; }
     double potential_energy(const State& x) const override;
     /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
     /// same torque, and updates the internal states of forces and general constraints.

@@ -35,6 +35,7 @@ public:
         out.name = o.name("name");
         model.gravity = o.vec3("gravity", model.gravity);
         out.end = o.positive("end", out.end);
+        if (o.has("redundant")) model.keep_redundant = o.one_of("redundant", {"drop", "keep"}) == "keep";
         o.record("bodies", each(o, "bodies", true,
                                 [this](const Json& v, const std::string& at) { return read_body(v, at); }));
         if (model.all_bodies().empty())

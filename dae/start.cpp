@@ -101,8 +101,9 @@ void check_redundant_row(const Model& model, const Model::Row& row, const State&
     }
     const auto check = [&](const char* level, double residual, double scale) {
         if (std::abs(residual) > redundancy_tolerance * scale)
-            throw ConstraintError(model.name_of(row) + ": contradicts the constraints before it in " + level +
-                                      ", residual " + number(residual) + ", at most " +
+            throw ConstraintError(model.name_of(row) + ": contradicts the " +
+                                      (model.keep_redundant ? "other constraints" : "constraints before it") +
+                                      " in " + level + ", residual " + number(residual) + ", at most " +
                                       number(redundancy_tolerance * scale) + " is allowed",
                                   row.constraint);
     };
@@ -151,7 +152,8 @@ void solve_with_internal_states(const Model& model, lie::Saddle& K, State& x)
 std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
 {
     model.prepare(x);
-    std::vector<int> redundant = dependent_rows(model, x, tolerance);
+    std::vector<int> redundant;
+    if (!model.keep_redundant) redundant = dependent_rows(model, x, tolerance);
     for (const int k : redundant) model.drop(k);
     if (model.rows() > 0) {
         lie::Saddle K(model, lie::Metric::mass, start_solver(model));
@@ -188,6 +190,16 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
     if (std::any_of(model.all_rows().begin(), model.all_rows().end(), has_complement))
         redundant = project_without_redundant(model, x, rank_tolerance);
     return redundant;
+}
+
+/// Number of the rows of a model with all rows that are redundant in the state x, for the report
+int number_of_redundant(const Model& model, State x)
+{
+    try {
+        return static_cast<int>(dependent_rows(model, x, rank_tolerance).size());
+    } catch (const lie::NumericalFailure&) {
+        return 0;  // contact forces that are not determined: they are those of minimum norm
+    }
 }
 
 /// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the
@@ -263,6 +275,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().algebraic_variables();
+    if (model.keep_redundant) report.redundant = number_of_redundant(model, x);
+    report.rank -= report.redundant;
     for (const auto& c : model.general_constraints())
         if (Model::inactive(*c, x))
             report.rank -= c->position_rows() - c->algebraic_variables() + c->velocity_rows();
@@ -295,7 +309,9 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
-    for (const int k : dropped) check_redundant_row(model, model.all_rows()[k], x);
+    // If all rows are kept, the contradictory ones are not known: any row may have the residual.
+    for (const int k : report.redundant > 0 ? model.active_rows() : dropped)
+        check_redundant_row(model, model.all_rows()[k], x);
     set_spring_limits(model, K, x);
     return report;
 }
@@ -306,11 +322,12 @@ void check_dropped_rows(const Model& model, const State& x)
         const Model::Row& row = model.all_rows()[k];
         const double residual = std::abs(model.scaled_residual(row, x));
         if (!(residual <= redundancy_tolerance))
-            throw lie::NodeFailure("constraint_drift",
-                                   model.name_of(row) +
-                                       ": removed as redundant at the start, now violated by " +
-                                       number(residual) + " m or rad, more than " +
-                                       number(redundancy_tolerance) + "; it is no longer redundant");
+            throw lie::NodeFailure(
+                "constraint_drift",
+                model.name_of(row) + ": removed as redundant at the start, now violated by " +
+                    number(residual) + " m or rad, more than " + number(redundancy_tolerance) +
+                    "; it is no longer redundant. With \"redundant\": \"keep\" in the "
+                    "model file all rows are kept");
     }
 }
 

@@ -20,8 +20,9 @@ struct StartOptions {
 };
 
 struct StartReport {
-    int rows = 0;  ///< rows of all blocks
-    int rank = 0;  ///< independent active rows minus algebraic variables, without regularised rows
+    int rows = 0;       ///< rows of all blocks
+    int rank = 0;       ///< independent active rows minus algebraic variables, without regularised rows
+    int redundant = 0;  ///< number of redundant rows that are kept, see Model::keep_redundant
     int degrees_of_freedom = 0;                           ///< 6 bodies - rank
     std::vector<std::string> dropped;                     ///< names of the redundant rows that were removed
     double position_residual = 0, velocity_residual = 0;  ///< largest scaled residuals of the data as given
@@ -35,7 +36,8 @@ struct StartReport {
 /// Prepares the model and the state for a run.
 ///
 /// 1. Model::prepare() checks the data and sets the sizes of the state.
-/// 2. dependent_rows() finds the redundant rows, and they are removed from the equations.
+/// 2. dependent_rows() finds the redundant rows, and they are removed from the equations, unless
+///    Model::keep_redundant is set.
 /// 3. Positions and velocities are projected onto the remaining rows. Data within the tolerance are projected
 ///    too, which changes them by about the tolerance.
 /// 4. Accelerations and multipliers are computed. If a force depends on multipliers, as friction depends on

@@ -29,6 +29,14 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
     if (!rows.algebraic.empty()) require(&Scheme::algebraic, "evolving contacts");
     if (!rows.regularised.empty()) require(&Scheme::regularised, "implicit friction");
     if (rows.velocity_rows > 0) require(&Scheme::nonholonomic, "rolling without slip");
+    if (system.keeps_redundant_rows()) {
+        require(&Scheme::redundant, "redundant rows (\"redundant\": \"keep\" in the model file)");
+        if (settings.linear_solver == LinearSolver::klu)
+            reject(
+                "integrator " + name,
+                "redundant rows (\"redundant\": \"keep\" in the model file) need the condensed linear solver",
+                "klu");
+    }
     return construct(system, settings);
 }
 

@@ -39,6 +39,7 @@ struct Scheme {
     bool algebraic = false;     ///< supports algebraic variables: evolving contacts
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
+    bool redundant = false;     ///< supports redundant rows, see System::keeps_redundant_rows()
     bool implicit_springs =
         false;  ///< evaluates System::spring_pattern() implicitly, see lie::ImplicitSprings
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of

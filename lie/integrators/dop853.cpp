@@ -89,7 +89,8 @@ const bool registered = register_runge_kutta<dop853>(
      .unknowns = "none; projection",
      .source = "Hairer, Nørsett, Wanner (1993), with projection",
      .algebraic = true,
-     .nonholonomic = true});
+     .nonholonomic = true,
+     .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

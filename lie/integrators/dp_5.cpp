@@ -42,7 +42,8 @@ const bool registered = register_runge_kutta<dormand_prince_5>(
      .source = "Dormand, Prince (1980), with projection",
      .stability = 1,
      .algebraic = true,
-     .nonholonomic = true});
+     .nonholonomic = true,
+     .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

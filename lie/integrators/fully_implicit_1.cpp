@@ -32,7 +32,11 @@ public:
     void choose_pivots(const State& x, double /*h*/) override { K.choose_pivots(x); }
 
 private:
-    void begin() override { K.assemble(x_n); }
+    void begin(double h) override
+    {
+        K.set_shift(shift(h));
+        K.assemble(x_n);
+    }
     void solve(const State& /*x*/, double /*h*/) override { K.solve(e); }
 
     Saddle K;  ///< the Newton matrix, frozen at t_n (Eq. 3.23)
@@ -47,7 +51,8 @@ const bool registered = register_scheme<FullyImplicit1>(
      .unknowns = "r'', omega', lambda",
      .source = "Fang (2022), Sec. 3.4",
      .loads = LoadEvaluation::extrapolated,
-     .algebraic = true});
+     .algebraic = true,
+     .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -45,6 +45,8 @@ public:
             }
         for (const LoadVariation::Block& block : dF.block)
             load_at.push_back(N.declare(6 * block.on, 6 * block.by, 6, 6));
+        if (model.keeps_redundant_rows())
+            for (int k = 0; k < C.rows(); ++k) shift_at.push_back(N.declare(m + k, m + k, 1, 1));
         N.analyse(m + model.rows());
     }
 
@@ -88,11 +90,25 @@ private:
                           h * h * x.lambda[k] *
                               by_accelerations(H.at(k, a, b), J_r[C.entry[C.start[k] + b].body]));
             }
+        for (size_t k = 0; k < shift_at.size(); ++k)
+            N.add(shift_at[k], -shift(h) * of_row(static_cast<int>(k)));
         for (size_t l = 0; l < dF.block.size(); ++l) {
             const auto& d = dF.block[l].d;
             N.add(load_at[l],
                   -h * h * by_accelerations(d.leftCols<6>(), J_r[dF.block[l].by]) - h * d.rightCols<6>());
         }
+    }
+
+    /// C M⁻¹ Cᵀ of row k
+    double of_row(int k) const
+    {
+        double sum = 0;
+        for (int n = C.start[k]; n < C.start[k + 1]; ++n) {
+            const Rows::Entry& entry = C.entry[n];
+            sum += entry.r.squaredNorm() / mass.m[entry.body] +
+                   entry.pi.dot(J_bar_inverse[entry.body] * entry.pi);
+        }
+        return sum;
     }
 
     /// From derivatives by (δr, δθ̄) to derivatives by (δr̈, δω̄̇) over h²: δr = h² δr̈, δθ̄ = h² J_r δω̄̇
@@ -108,7 +124,7 @@ private:
     std::vector<Mat3> J_r;  ///< J_r(h ω̄) of each body
     NewtonMatrix N;
     // handles of the blocks of N
-    std::vector<int> body_at, row_at, column_at, second_at, load_at;
+    std::vector<int> body_at, row_at, column_at, second_at, load_at, shift_at;
 };
 
 const bool registered = register_scheme<FullyImplicit1Exact>(
@@ -119,7 +135,8 @@ const bool registered = register_scheme<FullyImplicit1Exact>(
      .formulation = "rA",
      .unknowns = "r'', omega', lambda",
      .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix",
-     .loads = LoadEvaluation::implicit});
+     .loads = LoadEvaluation::implicit,
+     .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -57,10 +57,12 @@ public:
         else
             a_n = x_n.history;
         kappa = beta * h * h * (1 - alpha_f) / (1 - alpha_m);
+        K.set_shift(shift(h));
         K.assemble(x_n);                 // the Newton matrix, frozen at t_n
         predict(h, 0.5 * h * h, kappa);  // the increment of constant accelerations
+        start_redundant();
         x.t = x_n.t + h;
-        for (int k = 1; k <= settings.max_iterations; ++k) {
+        for (int k = 1; k <= most_iterations; ++k) {
             place(x, h);
             set_residual(x);
             K.solve(e);
@@ -70,6 +72,7 @@ public:
                 for (Motion& body : x.body) body.A = orthonormalised(body.A);
                 refuse_whole_turns(x, h, "rA-genalpha");
                 x.history = a_next;
+                if (K.keeps_redundant_rows()) minimise_multipliers(x);
                 return done(attempt, k);
             }
         }
@@ -90,14 +93,23 @@ private:
             body.omega_bar += h * body.omegadot_bar;
         }
         model.update_alpha(ahead);
+        K.set_shift(shift(h));
         K.assemble(ahead);
         set_load_terms(model, K, ahead, loads, e);
-        K.solve(e);
+        K.solve_in_step(e);
         for (int i = 0; i < bodies; ++i) {
             a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
             a_n.segment<6>(6 * i) +=
                 (alpha_m - alpha_f) * (e.segment<6>(6 * i) - a_n.segment<6>(6 * i)).eval();
         }
+    }
+
+    /// The multipliers of minimum norm at the end x of a step
+    void minimise_multipliers(State& x)
+    {
+        K.assemble(x);
+        K.minimise_multipliers(z);
+        x.lambda = K.constraint_part(z) / kappa;
     }
 
     /// The state x at t_{n+1}, and a_{n+1}, from z
@@ -146,6 +158,7 @@ const bool registered = register_scheme<GeneralisedAlpha>(
      .source = "Bruls, Cardona, Arnold (2012)",
      .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
+     .redundant = true,
      .rho_infinity = true});
 
 }  // namespace

@@ -43,6 +43,7 @@ const bool registered = register_scheme<HalfImplicit1>(
      .algebraic = true,
      .nonholonomic = true,
      .regularised = true,
+     .redundant = true,
      .implicit_springs = true,
      .energy_drifts = true});
 

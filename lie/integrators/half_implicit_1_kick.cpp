@@ -47,6 +47,7 @@ const bool registered = register_scheme<HalfImplicit1Kick>(
      .algebraic = true,
      .nonholonomic = true,
      .regularised = true,
+     .redundant = true,
      .implicit_springs = true,
      .energy_drifts = true});
 

@@ -125,6 +125,7 @@ const bool registered = register_scheme<HalfImplicit1Momentum>(
      .algebraic = true,
      .nonholonomic = true,
      .regularised = true,
+     .redundant = true,
      .implicit_springs = true});
 
 }  // namespace

@@ -59,6 +59,7 @@ const bool registered = register_scheme<HalfImplicit2>(
      .source = "Fang (2022), Sec. 3.6",
      .loads = LoadEvaluation::extrapolated,
      .algebraic = true,
+     .redundant = true,
      .energy_drifts = true});
 
 }  // namespace

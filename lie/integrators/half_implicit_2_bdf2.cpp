@@ -83,6 +83,7 @@ const bool registered =
                                         .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
                                         .loads = LoadEvaluation::extrapolated,
                                         .algebraic = true,
+                                        .redundant = true,
                                         .energy_drifts = true});
 
 }  // namespace

@@ -14,7 +14,10 @@ namespace {
 
 class Rattle final : public RattleStep {
 public:
-    Rattle(const System& model, const Settings& settings) : RattleStep(model, settings, "rA-rattle") {}
+    Rattle(const System& model, const Settings& settings) : RattleStep(model, settings, "rA-rattle")
+    {
+        K.set_refinements(2);
+    }
 
     int step(State& x, double h) override
     {
@@ -32,7 +35,8 @@ const bool registered =
                              .formulation = "rA",
                              .unknowns = "r, h omega, h^2 lambda / 2",
                              .source = "Hante, Arnold (2021)",
-                             .algebraic = true});
+                             .algebraic = true,
+                             .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -110,7 +110,8 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .order_lambda = order,
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
-            .source = source};
+            .source = source,
+            .redundant = true};
 }
 
 const bool registered = register_scheme<Rattle4>(composition("rA-rattle-4", 4, "Suzuki (1990)")) &&

@@ -63,7 +63,8 @@ const bool registered = register_scheme<Rkmk4>(
      .unknowns = "none; projection",
      .source = "Munthe-Kaas (1998), with projection",
      .algebraic = true,
-     .nonholonomic = true});
+     .nonholonomic = true,
+     .redundant = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -248,7 +248,7 @@ void Condensed::analyse(const Rows& pattern)
     update_start.push_back(static_cast<int>(update.size()));
 }
 
-bool Condensed::factor(const Rows& C)
+bool Condensed::factor(const Rows& C, double shift)
 {
     for (const Group& g : group)
         for (int row = 0; row < g.rows; ++row) {
@@ -263,6 +263,7 @@ bool Condensed::factor(const Rows& C)
     for (const Term& t : term) add_product(&value[t.at], &W[t.w_of], &W[t.w_by], t.of, t.by, 6, 1);
     for (const Group& g : group)
         for (int k = 0; k < g.rows; ++k) diagonal[g.first + k] = value[g.diagonal + k * g.rows + k];
+    if (shift > 0) shift_diagonal(shift);
     for (size_t n = 0; n < regularised_at.size(); ++n)
         diagonal[C.regularised[n]] = value[regularised_at[n]] += C.compliance[n];
 
@@ -272,7 +273,7 @@ bool Condensed::factor(const Rows& C)
         double* L = &value[g.diagonal];
         const double part =
             g.rows == 3 ? cholesky<3>(L, 3, &diagonal[g.first]) : cholesky<0>(L, g.rows, &diagonal[g.first]);
-        if (!(part > smallest_accepted_pivot)) return false;
+        if (!(part > (shift > 0 ? 0 : smallest_accepted_pivot))) return false;
         smallest = std::min(smallest, part);
         for (int n = column[p]; n < column[p + 1]; ++n)
             if (g.rows == 3)
@@ -285,6 +286,16 @@ bool Condensed::factor(const Rows& C)
         }
     }
     return true;
+}
+
+void Condensed::shift_diagonal(double shift)
+{
+    for (const Group& g : group)
+        for (int k = 0; k < g.rows; ++k) {
+            double& entry = value[g.diagonal + k * g.rows + k];
+            entry = entry > 0 ? (1 + shift) * entry : 1;
+            diagonal[g.first + k] = entry;
+        }
 }
 
 void Condensed::solve(Eigen::VectorXd& b)

@@ -7,6 +7,8 @@
 /// M stands for diag(M, J̄). It is block diagonal and constant, and is factored once: M = L Lᵀ. Then S = W Wᵀ
 /// with W = C L⁻ᵀ. The compliance of regularised rows is added to the diagonal of S.
 ///
+/// If rows may be dependent, S + ε D with D = diag(S) is factored. It is positive definite for all rows.
+///
 /// Consecutive rows between the same bodies form a group. S has a block for each pair of groups that share a
 /// body. Its Cholesky factor is computed by blocks, in an order that AMD (SuiteSparse) determines once from
 /// the pattern. A chain or a tree of joints has no fill-in.
@@ -24,8 +26,9 @@ public:
     Condensed(const Mass& mass, const Rows& pattern);
 
     /// Factors S of these rows. Returns false if the smallest pivot is below 1e-11 of its diagonal entry, or
-    /// not finite: the rows are nearly dependent or not finite.
-    bool factor(const Rows& C);
+    /// not finite: the rows are nearly dependent or not finite. If `shift` = ε is positive, factors S + ε D,
+    /// with D = 1 for rows that are zero. Returns false then only if a number is not finite or too large.
+    bool factor(const Rows& C, double shift = 0);
 
     /// Solves in place: (f, g) on entry, (x, λ) on return.
     void solve(Eigen::VectorXd& b);
@@ -60,7 +63,8 @@ private:
         int of, by, at_of, at_by, to;
     };
 
-    void solve_multipliers();               ///< y ← S⁻¹ y
+    void shift_diagonal(double shift);  ///< S ← S + shift D
+    void solve_multipliers();           ///< y ← S⁻¹ y
     void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (L⁻¹ f - Wᵀ y), λ = y; b holds L⁻¹ f on entry
 
     void find_groups(const Rows& pattern);

@@ -13,13 +13,14 @@
 namespace hilda::lie {
 
 Saddle::Saddle(const System& system, Metric metric, LinearSolver solver, const Rows& springs)
-    : system(system), metric(metric), solver(solver), bodies(system.bodies()),
-      m(system.rows() + springs.rows()), unknowns(system.pattern().algebraic_variables()),
-      C(system.pattern()), inactive(m, 0), work(size()), residual(size()), right_side(size())
+    : system(system), keeps(system.keeps_redundant_rows()), metric(metric), solver(solver),
+      bodies(system.bodies()), m(system.rows() + springs.rows()),
+      unknowns(system.pattern().algebraic_variables()), C(system.pattern()), inactive(m, 0), work(size()),
+      residual(size()), right_side(size())
 {
     if (springs.rows() > 0) C.append_springs(springs);
     // Otherwise the inactive rows are known only with the first state.
-    if (solver == LinearSolver::klu || unknowns == 0 || C.unilateral.empty()) choose_solver();
+    if ((solver == LinearSolver::klu && !keeps) || unknowns == 0 || C.unilateral.empty()) choose_solver();
 }
 
 Saddle::~Saddle() = default;
@@ -33,21 +34,22 @@ double Saddle::reciprocal_condition() const
 
 void Saddle::choose_solver()
 {
-    if (unknowns > 0 && solver != LinearSolver::klu) {
+    if (unknowns > 0 && (solver != LinearSolver::klu || keeps)) {
         elimination = std::make_unique<Elimination>(C, inactive);
         reduced.resize(6 * bodies + elimination->reduced().rows());
     }
     scale = Eigen::VectorXd::Ones(elimination ? reduced.size() : size());
     scaled = false;
-    analyse();
     chosen = true;
     condensed = nullptr;
-    if (solver == LinearSolver::klu) return;
+    if (!keeps) analyse();  // the pattern of redundant rows may be structurally singular
+    if (solver == LinearSolver::klu && !keeps) return;
     Mass unit;
     unit.m.assign(bodies, 1);
     unit.J_bar.assign(bodies, Mat3::Identity());
     condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, solved());
-    if (solver == LinearSolver::automatic && condensed->operations() > klu.operations()) condensed = nullptr;
+    if (solver == LinearSolver::automatic && !keeps && condensed->operations() > klu.operations())
+        condensed = nullptr;
 }
 
 /// Excludes from the factorisation the rows that are inactive in the state last evaluated.
@@ -237,11 +239,12 @@ void Saddle::set_rows(const State& x, std::span<const double> compliance)
 
 void Saddle::factor_rows(const State& x)
 {
-    by_condensed = condensed != nullptr && condensed->factor(solved());
+    by_condensed = condensed != nullptr && condensed->factor(solved(), keeps ? shift : 0);
     if (by_condensed) {
         ++condensed_factorizations;
         return;
     }
+    if (keeps) throw NonFinite("the saddle matrix is not finite");
     if (!scaled) scale_rows();
     fill();
     if (!klu.refactor()) factor(x);
@@ -253,6 +256,7 @@ void Saddle::choose_pivots(const State& x, std::span<const double> compliance)
     if (!compliance.empty() && x.history.size() == rows)
         compliance = {x.history.data(), static_cast<size_t>(rows - C.springs)};
     set_rows(x, compliance);
+    if (keeps) return factor_rows(x);
     by_condensed = false;
     factor(x);
 }
@@ -309,12 +313,47 @@ void Saddle::solve_constraints(Eigen::VectorXd& b)
 
 void Saddle::solve_refined(Eigen::VectorXd& b)
 {
+    refine(b, keeps ? most_refinements : 1);
+    minimise_multipliers(b);
+}
+
+void Saddle::solve_in_step(Eigen::VectorXd& b) { keeps ? refine(b, refinements) : solve(b); }
+
+void Saddle::refine(Eigen::VectorXd& b, int most)
+{
     right_side = b;
     solve(b);
-    multiply(b, residual);
-    work = right_side - residual;
-    solve(work);
-    b += work;
+    for (int k = 1; k <= most; ++k) {
+        multiply(b, residual);
+        work = right_side - residual;
+        solve(work);
+        b += work;
+        if (keeps && is_rounding(work, b)) return;
+    }
+}
+
+/// Whether a change of the motion of the bodies is a rounding error
+bool Saddle::is_rounding(const Eigen::VectorXd& change, const Eigen::VectorXd& of) const
+{
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    return change.head(6 * bodies).norm() <= rounding * of.head(6 * bodies).norm();
+}
+
+// With f = Cᵀ λ and g = 0 the multipliers of the regularised system are (S + ε D)⁻¹ S λ. This removes the part
+// of λ in the null space of S, and leaves the part that is D-orthogonal to it: the solution of minimum norm. An
+// eigenvalue σ of D⁻¹ S changes it by the factor 1 - (ε/(σ + ε))ⁿ after n steps.
+void Saddle::minimise_multipliers(Eigen::VectorXd& z)
+{
+    if (!keeps) return;
+    constexpr int steps = 3;
+    redundant = constraint_part(z);
+    constraint_part(z).setZero();
+    for (int k = 0; k < steps; ++k) {
+        work.setZero();
+        C.add_transpose(1, redundant - constraint_part(z), work);
+        solve(work);
+        constraint_part(z) += constraint_part(work);
+    }
 }
 
 void Saddle::multiply(const Rows& C, const Eigen::VectorXd& z, Eigen::VectorXd& out) const

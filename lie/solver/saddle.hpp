@@ -12,6 +12,13 @@
 /// K depends on the step h only through the compliance of regularised rows, which is on the diagonal with a
 /// negative sign (Rows::regularised).
 ///
+/// Dependent rows. If the system keeps redundant rows (System::keeps_redundant_rows), the zero block of the
+/// multipliers is replaced by -ε D with D = diag(S), the diagonal of the Schur complement S = C M⁻¹ Cᵀ, C =
+/// (Φ_r, Π̄). Its Schur complement S + ε D is positive definite for all rows: no rank is decided and no pivot is
+/// rejected. It does not depend on the units and the scaling of the rows. solve() is then one correction of an
+/// iteration whose residuals are those of the rows without ε (augmented Lagrangian). solve_refined() contains
+/// the iteration.
+///
 /// A system with algebraic variables α has in addition the column Φ_α of the constraint rows and its
 /// transpose, with a zero diagonal block (Eq. 5.48). The α are the last unknowns.
 
@@ -22,6 +29,7 @@
 #include "lie/solver/linear_solver.hpp"
 #include "lie/state.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -49,6 +57,15 @@ public:
     explicit Saddle(const System& system, Metric metric = Metric::mass,
                     LinearSolver solver = LinearSolver::klu, const Rows& springs = {});
     ~Saddle();
+
+    /// For a system that keeps redundant rows: ε for the next assemble(), at least 1e-10. Other systems ignore
+    /// it.
+    void set_shift(double epsilon) { shift = std::max(epsilon, smallest_shift); }
+    /// Largest number of refinements of solve_in_step() with redundant rows. Two are enough for a scheme of
+    /// order 2; near a singular configuration more of them only follow the residual of the last Newton step.
+    void set_refinements(int most) { refinements = most; }
+    double used_shift() const { return keeps ? shift : 0; }
+    bool keeps_redundant_rows() const { return keeps; }
 
     /// Sets the rows of the springs and their compliances for the next assemble(). They have the pattern
     /// given to the constructor.
@@ -78,8 +95,17 @@ public:
     void solve(Eigen::VectorXd& b);
     /// Solves K z = (0, g) in place. Only the constraint part g of b is read.
     void solve_constraints(Eigen::VectorXd& b);
-    /// solve() with one step of iterative refinement, for initial states and kinematics.
+    /// solve() with one step of iterative refinement, for initial states and kinematics. With redundant rows
+    /// there are up to ten steps, until the motion no longer changes, and the multipliers are those of
+    /// minimise_multipliers().
     void solve_refined(Eigen::VectorXd& b);
+    /// The solution in a step: with redundant rows solve_refined() without minimise_multipliers(), otherwise
+    /// solve()
+    void solve_in_step(Eigen::VectorXd& b);
+    /// Replaces the multipliers in z by those of minimum norm that exert the same forces Cᵀ λ. The norm is √(λᵀ D
+    /// λ), that of the multipliers of rows of length one in the metric of the mass. Does nothing if the system
+    /// does not keep redundant rows.
+    void minimise_multipliers(Eigen::VectorXd& z);
 
     /// out = K z
     void multiply(const Eigen::VectorXd& z, Eigen::VectorXd& out) const { multiply(C, z, out); }
@@ -117,7 +143,16 @@ private:
     const Rows& solved() const;
     void solve_solved(Eigen::VectorXd& b, bool only_constraints);
 
+    void refine(Eigen::VectorXd& b, int most);
+    bool is_rounding(const Eigen::VectorXd& change, const Eigen::VectorXd& of) const;
+
+    static constexpr double smallest_shift = 1e-10;  ///< above rounding errors of S
+    static constexpr int most_refinements = 10;
+    int refinements = most_refinements;
+
     const System& system;
+    const bool keeps;
+    double shift = smallest_shift;
     const Metric metric;
     const LinearSolver solver;
     int bodies, m, unknowns;  ///< unknowns: number of algebraic variables
@@ -145,6 +180,7 @@ private:
     std::vector<int> unilateral_slot;   ///< diagonal entries of the unilateral rows
     std::vector<int> regularised_slot;  ///< diagonal entries of the regularised rows
     Eigen::VectorXd work, residual, right_side;
+    Eigen::VectorXd redundant;  ///< multipliers before minimise_multipliers()
 
     State assembled;  ///< state of the last assemble() with compliances, for refactor()
     State pivot_state;

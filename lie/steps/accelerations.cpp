@@ -86,7 +86,7 @@ void solve_accelerations(const System& system, Saddle& K, State& x)
 void solve_accelerations(const System& system, Saddle& K, State& x, Loads& loads, Eigen::VectorXd& b)
 {
     set_load_terms(system, K, x, loads, b);
-    K.solve(b);
+    K.solve_in_step(b);
     set_accelerations(K, x, b);
 }
 

@@ -12,16 +12,18 @@ BackwardEulerStep::BackwardEulerStep(const System& model, const Settings& settin
 {
     z.resize(6 * bodies + model.rows() + C.algebraic_variables());
     e.resize(z.size());
+    if (model.keeps_redundant_rows()) of_multipliers = std::make_unique<Saddle>(model);
 }
 
 int BackwardEulerStep::step(State& x, double h)
 {
     x_n = x;
     Attempt attempt(x, x_n);
-    begin();
+    begin(h);
     predict(0, 1, 1);
+    start_redundant();
     x.t = x_n.t + h;
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         place(x, h);
         set_residual(x, h);
         solve(x, h);
@@ -30,6 +32,11 @@ int BackwardEulerStep::step(State& x, double h)
             place(x, h);
             refuse_whole_turns(x, h, name);
             for (Motion& body : x.body) body.A = orthonormalised(body.A);
+            if (of_multipliers) {
+                of_multipliers->assemble(x);
+                of_multipliers->minimise_multipliers(z);
+                x.lambda = constraint_part(z);
+            }
             return done(attempt, k);
         }
     }

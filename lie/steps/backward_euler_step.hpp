@@ -8,7 +8,10 @@
 
 #pragma once
 
+#include "lie/solver/saddle.hpp"
 #include "lie/steps/newton_step.hpp"
+
+#include <memory>
 
 namespace hilda::lie {
 
@@ -20,8 +23,8 @@ public:
 protected:
     BackwardEulerStep(const System& model, const Settings& settings, std::string name);
 
-    /// Called at the beginning of a step from x_n
-    virtual void begin() {}
+    /// Called at the beginning of a step h from x_n
+    virtual void begin(double /*h*/) {}
     /// e ← N⁻¹ e, with the Newton matrix N of the iterate x
     virtual void solve(const State& x, double h) = 0;
 
@@ -32,6 +35,7 @@ private:
     void set_residual(const State& x, double h);
 
     const std::string name;
+    std::unique_ptr<Saddle> of_multipliers;  ///< with redundant rows: for the multipliers of minimum norm
 };
 
 }  // namespace hilda::lie

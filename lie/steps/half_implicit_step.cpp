@@ -19,6 +19,7 @@ HalfImplicitStep::HalfImplicitStep(const System& model, const Settings& settings
     : SaddleStep(model, settings, implicit_springs.rows()), name(std::move(name)), w(w), q(q),
       springs(std::move(implicit_springs)), C_n(K.rows()), friction(model), z_before(K.size()),
       Phi(model.rows()), lambda(K.rows().rows()), anderson(K.size(), 6 * bodies),
+      corrects_velocity_rows(model.keeps_redundant_rows() && K.rows().velocity_rows > 0),
       accelerates(model.pattern().algebraic.empty() && model.pattern().regularised.empty())
 {}
 
@@ -29,6 +30,7 @@ int HalfImplicitStep::step(State& x, double h)
     begin(h);
     friction.start(x_n, h);
     start_springs(x_n, h);
+    K.set_shift(shift(h));
     K.assemble(x_n, friction.compliance());  // the Newton matrix of t_n (Eqs. 3.32, 3.51)
     set_known_part(h);
     predict(h);
@@ -109,13 +111,13 @@ int HalfImplicitStep::solve(State& x)
 
 int HalfImplicitStep::newton(State& x)
 {
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         place(x);
         place_algebraic(x, 1 / q);
         if (k > patience && (!accelerates || (k - patience) % accelerated == 1)) refresh(x), anderson.start();
         const bool is_slow = k > patience && accelerates;
         if (is_slow) z_before = z;
-        correct(refreshed ? 1 : k, x);
+        correct(refreshed || corrects_velocity_rows ? 1 : k, x);
         if (converged(k, length(), K.constraint_part(e).head(model.rows()), 1 / w)) return k;
         if (!is_slow) continue;
         anderson.accelerate(z_before, e);
@@ -251,9 +253,13 @@ void HalfImplicitStep::accept(State& x, double h)
     place(x);
     place_algebraic(x, 1 / q);
     lambda = K.constraint_part(z) / (w * h * h);
-    x.lambda = lambda.head(model.rows());
     b.setZero();
     rows_of_node().add_transpose(1, lambda, b);
+    if (K.keeps_redundant_rows()) {
+        K.minimise_multipliers(z);
+        lambda = K.constraint_part(z) / (w * h * h);
+    }
+    x.lambda = lambda.head(model.rows());
     for (int i = 0; i < bodies; ++i) {
         Motion& body = x.body[i];
         body.A = orthonormalised(body.A);

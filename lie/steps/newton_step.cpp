@@ -16,8 +16,29 @@
 
 namespace hilda::lie {
 
+namespace {
+
+// Newton iterations of a step with redundant rows. Residuals in the direction of an eigenvalue σ of D⁻¹ S
+// decrease by ε/(σ + ε) in each of them: fast unless the configuration is almost singular.
+constexpr int most_redundant = 6;
+// Corrections of such a step may grow up to this factor near a singular configuration. The largest measured
+// is 5.
+constexpr double largest_growth = 100;
+// The shift ε = 10 (h rate)², rate² = max(|ω̄|², |ω̄̇|). In a step across a singular configuration an eigenvalue
+// σ of D⁻¹ S changes by about (h rate)² and the frozen matrix differs from that of the end of the step by as
+// much. A smaller factor than 4 lets the corrections grow; a larger one increases the error of the crossing,
+// which is proportional to ε.
+constexpr double squared_rates = 10;
+// Limits the error of a correction in regular directions for large steps and fast rotors.
+constexpr double largest_shift = 0.01;
+
+}  // namespace
+
 NewtonStep::NewtonStep(const System& model, const Settings& settings)
-    : model(model), mass(model.mass()), bodies(model.bodies()), settings(settings), loads(bodies)
+    : model(model), mass(model.mass()), bodies(model.bodies()), settings(settings),
+      most_iterations(model.keeps_redundant_rows() ? std::min(settings.max_iterations, most_redundant)
+                                                   : settings.max_iterations),
+      loads(bodies)
 {
     for (const Mat3& J_bar : mass.J_bar) J_bar_inverse.push_back(J_bar.inverse());
     set_rounding_mass();
@@ -42,6 +63,11 @@ void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
     }
     constraint_part(z) = by_lambda * x_n.lambda;
     algebraic_part(z).setZero();
+}
+
+void NewtonStep::start_redundant()
+{
+    if (model.keeps_redundant_rows()) constraint_part(z).setZero();
 }
 
 void NewtonStep::place_increments(State& x) const
@@ -104,8 +130,20 @@ bool NewtonStep::converged(int k, double motion, const Eigen::Ref<const Eigen::V
     }
     const double before = correction;
     correction = std::sqrt(sum / std::max(1.0, bodies / 4.0));
+    if (k == 1) first_correction = correction;
     if (correction < std::max(settings.tolerance, 4 * ulp)) return true;
+    if (model.keeps_redundant_rows() && k == most_iterations)
+        return correction <= largest_growth * first_correction;
     return k > 2 && correction > 0.5 * before && correction < 1e3 * ulp;
+}
+
+double NewtonStep::shift(double h) const
+{
+    if (!model.keeps_redundant_rows()) return 0;
+    double square = 0;  // of the rate
+    for (const Motion& body : x_n.body)
+        square = std::max({square, body.omega_bar.squaredNorm(), body.omegadot_bar.norm()});
+    return std::min(squared_rates * square * h * h, largest_shift);
 }
 
 void NewtonStep::take_loads(State& node, const State& after)
@@ -141,8 +179,8 @@ void NewtonStep::no_convergence(const std::string& scheme, double correction, co
 {
     std::ostringstream what;
     what.precision(2);
-    what << scheme << ": correction " << correction << " after " << settings.max_iterations << " iterations";
-    NoConvergence failure(what.str(), correction, settings.max_iterations);
+    what << scheme << ": correction " << correction << " after " << most_iterations << " iterations";
+    NoConvergence failure(what.str(), correction, most_iterations);
     if (model.rows() > 0) {
         Eigen::VectorXd Phi(model.rows());
         model.phi(x, Phi);

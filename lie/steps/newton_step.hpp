@@ -44,6 +44,10 @@ protected:
 
     /// Initial guess: by_v v + by_vdot v̇ for each body, with v = (ṙ, ω̄) of t_n; by_lambda λ_n; 0
     void predict(double by_v, double by_vdot, double by_lambda);
+    /// Sets the multipliers of the initial guess to zero if the system keeps redundant rows. For schemes whose
+    /// multipliers act in the directions of the rows of the iterate: their part in the null space of the frozen
+    /// matrix exerts a force there. It would grow from step to step.
+    void start_redundant();
     /// Poses of x from the increments in z: r = r_n + z_r, A = A_n exp(z_θ)
     void place_increments(State& x) const;
     /// x.alpha = α_n + factor · (algebraic part of z)
@@ -78,6 +82,9 @@ protected:
     /// The iteration ends
     /// - if the correction is below the tolerance, or below four ulp of the largest coordinate, or
     /// - for k > 2, if it is below 1000 ulp and has decreased by less than a factor of two.
+    /// - if the system keeps redundant rows, with correction `most_iterations`, unless it exceeds the first
+    ///   one by far. Near a singular configuration the corrections in the direction of a small singular value
+    ///   of the rows do not become small, and the residual there is left to the following steps.
     /// Changes of a multiplier below its rounding error (rounding_mass times ulp) are ignored. Without these
     /// limits a heavy body, or one far from the origin, would prevent convergence.
     bool converged(int k, double motion, const Eigen::Ref<const Eigen::VectorXd>& multipliers, double factor);
@@ -110,10 +117,16 @@ protected:
                 N.reciprocal_condition()};
     }
 
+    /// The shift ε of the saddle matrix for redundant rows (Saddle::set_shift) in a step h from x_n, from the
+    /// angular velocities and accelerations there
+    double shift(double h) const;
+
     const System& model;
     const Mass& mass;  ///< of the model; the functions of System are virtual
     const int bodies;
     const Settings settings;
+    /// Largest number of Newton iterations: that of the settings; at most 6 with redundant rows
+    const int most_iterations;
     Loads loads;
     State x_n;              ///< the state at the beginning of the step
     Eigen::VectorXd z, e;   ///< the unknowns and their correction
@@ -128,6 +141,7 @@ private:
     /// the bodies that constraints connect with the row, directly or through other bodies
     Eigen::VectorXd rounding_mass;
     double ulp = 0;  ///< of the largest coordinate in x_n [m]
+    double first_correction = 0;
 };
 
 }  // namespace hilda::lie

@@ -19,6 +19,7 @@ void NodeStep::assemble_once(const State& x)
     at.t = std::numeric_limits<double>::quiet_NaN();  // in case assemble() throws
     K.assemble(x);
     at = x;
+    shift_at = K.used_shift();
 }
 
 void NodeStep::set_accelerations(State& x)
@@ -29,7 +30,7 @@ void NodeStep::set_accelerations(State& x)
 
 int NodeStep::finish(State& x, const std::string& scheme)
 {
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         set_position_residual(model, K, x, e);
         K.solve(e);
         move(K, x, e);
@@ -38,13 +39,22 @@ int NodeStep::finish(State& x, const std::string& scheme)
         set_momenta(model, x, e);
         solve_velocities(model, K, x, e);
         set_accelerations(x);
+        minimise_multipliers(x);
         return k;
     }
     no_convergence(scheme, correction, x);
 }
 
+void NodeStep::minimise_multipliers(State& x)
+{
+    if (!K.keeps_redundant_rows()) return;
+    K.minimise_multipliers(e);
+    x.lambda = K.constraint_part(e);
+}
+
 bool NodeStep::assembled_at(const State& x) const
 {
+    if (shift_at != K.used_shift()) return false;
     if (at.t != x.t || at.discrete_state != x.discrete_state || at.alpha != x.alpha) return false;
     for (size_t i = 0; i < x.body.size(); ++i)
         if (at.body[i].r != x.body[i].r || at.body[i].A != x.body[i].A) return false;

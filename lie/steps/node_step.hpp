@@ -24,6 +24,9 @@ protected:
     /// Sets r̈, ω̄̇, λ of x: K (r̈, ω̄̇, λ) = (F, τ̄, γ)                                Fang (2022), Eqs.
     /// 2.9, 2.17
     void set_accelerations(State& x);
+    /// Replaces λ of x, which set_accelerations() has just set, by the multipliers of minimum norm, see
+    /// Saddle::minimise_multipliers().
+    void minimise_multipliers(State& x);
 
     /// The end of a step: projects the positions of x onto Φ = 0 by Newton steps with the present K, then the
     /// velocities onto Φ_r ṙ + Π̄ ω̄ = ν, and computes accelerations and multipliers.
@@ -36,6 +39,7 @@ protected:
 private:
     bool assembled_at(const State& x) const;
 
+    double shift_at = 0;  ///< the shift of K
     /// The state of K; t is NaN if there is none
     State at{.t = std::numeric_limits<double>::quiet_NaN(),
              .body = {},

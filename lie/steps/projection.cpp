@@ -96,7 +96,7 @@ void solve_velocities(const System& system, Saddle& K, State& x, Eigen::VectorXd
     if (refined)
         K.solve_refined(b);
     else
-        K.solve(b);
+        K.solve_in_step(b);
     set_velocities(x, b);
 }
 

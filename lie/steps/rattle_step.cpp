@@ -28,12 +28,13 @@ Statistics RattleStep::statistics() const
 
 int RattleStep::advance(State& x, double h, double t_end)
 {
+    K.set_shift(shift(h));
     assemble_at_start();
     set_known_part(h);
     predict(h, 0.5 * h * h, 0.5 * h * h);  // constant accelerations, and the multipliers of t_n
     x.t = t_end;
     anderson.start();
-    for (int k = 1; k <= settings.max_iterations; ++k) {
+    for (int k = 1; k <= most_iterations; ++k) {
         place(x);
         set_linear_residual(K.rows());
         balance_momentum();
@@ -47,6 +48,7 @@ int RattleStep::advance(State& x, double h, double t_end)
             for (Motion& body : x.body) body.A = orthonormalised(body.A);
             set_velocities(x, h);
             set_accelerations(x);
+            minimise_multipliers(x);
             return k;
         }
     }

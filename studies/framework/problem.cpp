@@ -3,6 +3,7 @@
 
 #include "io/nearest.hpp"
 #include "lie/check.hpp"
+#include "studies/problems/n_four_bar.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
 #include <algorithm>
@@ -12,16 +13,15 @@ namespace hilda::studies {
 
 namespace {
 
-/// N of n_pendulum_N; empty for other names. lie::InvalidInput for N out of range.
-std::optional<int> bars(const std::string& name)
+/// N of FAMILY_N; empty for other names. lie::InvalidInput for N out of range.
+std::optional<int> number(const std::string& name, const std::string& family, int most)
 {
-    static const std::string family = "n_pendulum_";
-    if (!name.starts_with(family)) return std::nullopt;
-    const std::string digits = name.substr(family.size());
+    if (!name.starts_with(family + '_')) return std::nullopt;
+    const std::string digits = name.substr(family.size() + 1);
     if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-    const int n = digits.size() > 6 ? most_bars + 1 : std::stoi(digits);
-    if (n < 1 || n > most_bars || digits.front() == '0')
-        lie::reject("studies::problem", "N of n_pendulum_N must be from 1 to " + std::to_string(most_bars),
+    const int n = digits.size() > 6 ? most + 1 : std::stoi(digits);
+    if (n < 1 || n > most || digits.front() == '0')
+        lie::reject("studies::problem", "N of " + family + "_N must be from 1 to " + std::to_string(most),
                     name);
     return n;
 }
@@ -31,7 +31,8 @@ std::optional<int> bars(const std::string& name)
 Problem problem(const std::string& name)
 {
     if (const Problem* known = io::Registry<Problem>::find(name)) return *known;
-    if (const std::optional<int> n = bars(name)) return n_pendulum(*n, name);
+    if (const auto n = number(name, "n_pendulum", most_bars)) return n_pendulum(*n, name);
+    if (const auto n = number(name, "n_four_bar", most_windows)) return n_four_bar(*n, name);
 
     const std::vector<std::string> names = io::Registry<Problem>::names();
     std::string all;
@@ -39,7 +40,8 @@ Problem problem(const std::string& name)
     const std::string meant = io::nearest(name, names);
     throw lie::InvalidInput("no built-in model is called '" + name + "'" +
                             (meant.empty() ? "." : "; did you mean '" + meant + "'?") + " Built-in models: " +
-                            all + ", and n_pendulum_N for N from 1 to " + std::to_string(most_bars));
+                            all + ", n_pendulum_N for N from 1 to " + std::to_string(most_bars) +
+                            ", and n_four_bar_N for N from 1 to " + std::to_string(most_windows));
 }
 
 }  // namespace hilda::studies

@@ -30,7 +30,15 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
     const dae::Model::StableStep limit = model.stable_step(x, lie::scheme(default_integrator)),
                                  contacts = model.stable_step(x, LoadEvaluation::implicit);
     // Implicit integrators remove the limits of springs, and not those of contacts.
-    if (limit.h < default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit)))
+    const bool stiff =
+        limit.h < default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit));
+    if (stiff && model.keep_redundant)
+        return {
+            "rA-full-1-exact",
+            fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rA-full-1-exact is "
+                        "implicit and takes redundant rows",
+                        force_of(limit).label(), limit.h)};
+    if (stiff)
         return {"rp-bdf2",
                 fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rp-bdf2 "
                             "and ida-rp are implicit{}",

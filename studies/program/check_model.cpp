@@ -389,6 +389,8 @@ int check_model(const CheckOptions& options)
     for (const CompliantContactInfo& c : compliant) line(("  " + c.name + " ").c_str(), to_text(c));
     line("degrees of freedom", std::to_string(start.degrees_of_freedom));
     for (const std::string& row : start.dropped) line("redundant", row);
+    if (start.redundant > 0)
+        line("redundant", io::counted(start.redundant, "row") + ", kept in the equations");
     const auto initial = [&](double value, const char* unit, const std::string& row,
                              const std::string& violation) {
         return value > dae::StartOptions{}.tolerance ? violation + ", " + row : residual(value, unit, row);

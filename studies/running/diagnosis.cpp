@@ -97,6 +97,15 @@ std::string singular_driver(const dae::Model& model, double t, double h)
     return {};
 }
 
+/// Whether a failure may be that of a singular configuration: an iteration or a factorisation that fails after
+/// rows were removed as redundant at the start, or for rows that are dependent at the node
+bool may_be_singular(const dae::Model& model, const lie::NumericalFailure& failure, double rcond)
+{
+    if (model.keep_redundant || (failure.status != "newton_diverged" && failure.status != "singular_matrix"))
+        return false;
+    return !model.dropped_rows().empty() || rcond < 1e-12;
+}
+
 }  // namespace
 
 std::string step_text(double h)
@@ -142,6 +151,9 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
         d.detail += fmt::format("largest: {}; residual {:.1e}; reciprocal condition {:.0e}{}", row,
                                 newton != nullptr ? newton->residual : worst.value, rcond,
                                 rcond < 1e-12 ? ": redundant or singular constraints?" : "");
+        if (may_be_singular(model, failure, rcond))
+            d.detail +=
+                "; a mechanism passes singular configurations with \"redundant\": \"keep\" in its file";
     }
     if (scheme.adaptive) return d;
     for (const auto& force : model.forces())

@@ -23,7 +23,7 @@ dae::Description started(const Problem& problem, const std::vector<std::string>&
 
 std::vector<std::string> all_names()
 {
-    std::vector<std::string> names = {"n_pendulum_1", "n_pendulum_5"};
+    std::vector<std::string> names = {"n_pendulum_1", "n_pendulum_5", "n_four_bar_1", "n_four_bar_5"};
     for (const Problem& p : studies::problems()) names.push_back(p.name);
     return names;
 }
@@ -113,7 +113,11 @@ TEST_CASE("each built-in problem has the expected number of degrees of freedom",
                                                     {"ball_in_bowl", 5},
                                                     {"rolling_ball_in_bowl", 3},
                                                     {"rocking_ellipsoid", 5},
-                                                    {"rattleback", 3}};
+                                                    {"rattleback", 3},
+                                                    {"n_four_bar", 1},
+                                                    {"n_four_bar_10", 1},
+                                                    {"bricard", 1},
+                                                    {"flyball_governor", 4}};
     for (const auto& [name, freedom] : freedoms) {
         INFO(name);
         dae::Description d = dae::read_model(studies::problem(name).model, name);
@@ -200,6 +204,8 @@ TEST_CASE("problems are found by name, and the message of an unknown name contai
     CHECK_THROWS_WITH(studies::problem("n_pendulum_100001"), Catch::Contains("from 1 to 100000"));
     CHECK_THROWS_WITH(studies::problem("n_pendulum_99999999999999999999"),
                       Catch::Contains("from 1 to 100000"));
+    CHECK_THROWS_WITH(studies::problem("n_four_bar_0"), Catch::Contains("from 1 to 10000"));
+    CHECK_THROWS_WITH(studies::problem("n_four_bar_10001"), Catch::Contains("N of n_four_bar_N"));
     CHECK_THROWS_WITH(studies::problem("n_pendulum_x"), Catch::Contains("no built-in model"));
     CHECK(studies::problem("n_pendulum").reference_solution);
     CHECK_THROWS_AS(io::Registry<Problem>::add(studies::problem("n_pendulum")), std::logic_error);

@@ -118,6 +118,12 @@ public:
     /// an unused place. Schemes with an exact Newton matrix differentiate the force by the motions of these
     /// bodies. With the default, two times `ground`, the force does not contribute to the Newton matrix.
     virtual std::array<int, 2> bodies() const { return {ground, ground}; }
+    /// The derivatives of the loads (F, n̄ of the first of bodies(); F, n̄ of the second) by (δr, δθ̄ of the
+    /// first; δr, δθ̄ of the second; δṙ, δω̄ of the first; δṙ, δω̄ of the second), with A ← A exp(δθ̄~)
+    using LoadDerivatives = Eigen::Matrix<double, 12, 24>;
+    /// Sets the derivatives in the state x and returns true. The default, false, is for forces without closed
+    /// formulas: the model computes differences. The function must not allocate memory.
+    virtual bool load_derivatives(const State& /*x*/, LoadDerivatives& /*out*/) const { return false; }
 
     /// Highest number of the bodies on which the force acts
     virtual int last_body() const = 0;

@@ -15,6 +15,37 @@ constexpr double swap_threshold = 0.9;
 // vectors have left their common plane of rotation.
 constexpr double swap_tolerance = 1e-6;
 
+/// The derivatives of the loads of a force by central differences. out.x is x on entry and on return.
+void difference_loads(const Force& f, const State& x, lie::LoadVariation& out, Force::LoadDerivatives& d)
+{
+    constexpr double h = 6e-6;  // balances the truncation error h² and the rounding error 1e-16/h
+    const std::array<int, 2> bodies = f.bodies();
+    d.setZero();
+    for (int by = 0; by < 2; ++by) {
+        if (bodies[by] == ground) continue;
+        Motion& moved = out.x.body[bodies[by]];
+        for (int c = 0; c < 12; ++c) {
+            const auto evaluate = [&](double step, lie::Loads& loads) {
+                Vec3* const part[] = {&moved.r, nullptr, &moved.rdot, &moved.omega_bar};
+                if (c / 3 == 1)
+                    moved.A = moved.A * lie::exp(step * Vec3::Unit(c - 3));
+                else
+                    (*part[c / 3])[c % 3] += step;
+                loads.set_zero();
+                f.add(out.x, loads);
+                moved = x.body[bodies[by]];
+            };
+            evaluate(h, out.plus);
+            evaluate(-h, out.minus);
+            auto column = d.col((c < 6 ? 0 : 6) + 6 * by + c);
+            for (int on = 0; on < 2; ++on)
+                if (const int b = bodies[on]; b != ground)
+                    column.segment<6>(6 * on) << (out.plus.F[b] - out.minus.F[b]) / (2 * h),
+                        (out.plus.n_bar[b] - out.minus.n_bar[b]) / (2 * h);
+        }
+    }
+}
+
 }  // namespace
 
 void Model::loads(const State& x, lie::Loads& out) const
@@ -196,36 +227,21 @@ lie::LoadVariation Model::load_pattern() const
 void Model::load_variation(const State& x, lie::LoadVariation& out) const
 {
     if (out.block.empty()) return;
-    constexpr double h = 6e-6;  // balances the truncation error h² and the rounding error 1e-16/h
-    out.x = x;
-    size_t first = 0;
+    bool copied = false;
+    Force::LoadDerivatives d;
+    lie::LoadVariation::Block* block = out.block.data();
     for (const auto& f : force) {
-        size_t blocks = 0;
-        for (const int by : f->bodies()) {
-            if (by == ground) continue;
-            Motion& moved = out.x.body[by];
-            for (int c = 0; c < 12; ++c) {
-                const auto evaluate = [&](double step, lie::Loads& loads) {
-                    Vec3* const part[] = {&moved.r, nullptr, &moved.rdot, &moved.omega_bar};
-                    if (c / 3 == 1)
-                        moved.A = moved.A * lie::exp(step * Vec3::Unit(c - 3));
-                    else
-                        (*part[c / 3])[c % 3] += step;
-                    loads.set_zero();
-                    f->add(out.x, loads);
-                    moved = x.body[by];
-                };
-                evaluate(h, out.plus);
-                evaluate(-h, out.minus);
-                size_t at = first + blocks;
-                for (const int on : f->bodies())
-                    if (on != ground)
-                        out.block[at++].d.col(c) << (out.plus.F[on] - out.minus.F[on]) / (2 * h),
-                            (out.plus.n_bar[on] - out.minus.n_bar[on]) / (2 * h);
-            }
-            for (const int on : f->bodies()) blocks += on != ground;
+        const std::array<int, 2> bodies = f->bodies();
+        if (bodies[0] == ground && bodies[1] == ground) continue;
+        if (!f->load_derivatives(x, d)) {
+            if (!copied) out.x = x;
+            copied = true;
+            difference_loads(*f, x, out, d);
         }
-        first += blocks;
+        for (int by = 0; by < 2; ++by)
+            for (int on = 0; on < 2; ++on)
+                if (bodies[on] != ground && bodies[by] != ground)
+                    (block++)->d << d.block<6, 6>(6 * on, 6 * by), d.block<6, 6>(6 * on, 12 + 6 * by);
     }
 }
 

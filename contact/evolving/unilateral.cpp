@@ -386,9 +386,10 @@ std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const 
                                                  const lie::Settings& settings)
 {
     // The state of a contact changes at the ends of steps, with an error that the estimate of a step does not
-    // contain. An explicit step may also pass over a contact that closes.
+    // contain. A long step may also pass over a contact that closes. The adaptive schemes on Euler parameters
+    // (IDA) have events.
     const auto refuse_adaptive = [&](const std::string& contact) {
-        if (scheme.adaptive && scheme.loads != lie::LoadEvaluation::implicit)
+        if (scheme.adaptive && scheme.formulation == "rA")
             lie::reject("integrator " + scheme.name,
                         "adaptive steps do not support contacts; use a fixed step", contact);
     };

@@ -2,8 +2,11 @@
 /// Bushing: a spring and damper with six components between two bodies.
 #include "dae/forces/bushing.hpp"
 
+#include "dae/forces/row_load.hpp"
 #include "dae/model_types.hpp"
 #include "lie/check.hpp"
+
+#include <cmath>
 
 namespace hilda::dae {
 
@@ -89,6 +92,90 @@ int Bushing::spring_rows(const State& x, SpringRow* out) const
                          .gamma = psiddot[axis]};
     }
     return 6;
+}
+
+bool Bushing::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    out.setZero();
+    add_translations(x, out);
+    add_rotations(x, out);
+    return true;
+}
+
+void Bushing::add_translations(const State& x, LoadDerivatives& out) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 y = bi.A.transpose() * (bj.r + bj.A * s_bar_j - bi.r), d = y - s_bar_i;
+    const Vec12 v = velocities(bi, bj);
+    Eigen::Matrix<double, 3, 12> of_y;
+    of_y << -bi.A.transpose(), lie::tilde(y), bi.A.transpose(),
+        -bi.A.transpose() * bj.A * lie::tilde(s_bar_j);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 e_i = Vec3::Unit(axis), e = bi.A * e_i, e_j = bj.A.transpose() * e;
+        const Mat3 of_e = -bi.A * lie::tilde(e_i);  // by δθ̄ of body i
+        RowLoad row;
+        row.w << -e, -y.cross(e_i), e, s_bar_j.cross(e_j);
+        row.g = row.w;
+        row.W.block<3, 3>(0, 3) = -of_e;
+        row.W.middleRows<3>(3) = lie::tilde(e_i) * of_y;
+        row.W.block<3, 3>(6, 3) = of_e;
+        row.W.block<3, 3>(9, 3) = lie::tilde(s_bar_j) * bj.A.transpose() * of_e;
+        row.W.block<3, 3>(9, 9) = lie::tilde(s_bar_j) * lie::tilde(e_j);
+        const double k = coefficients.stiffness[axis], c = coefficients.damping[axis];
+        row.add_to(k * d[axis] + c * row.w.dot(v), k, c, v, out);
+    }
+}
+
+namespace {
+
+/// J_r(ψ)⁻¹ = I + ψ̃/2 + c(|ψ|) ψ̃²: c(x) = (1 - x/2 cot(x/2))/x² and c'(x)/x
+struct InverseCoefficient {
+    double c, cdot;
+    explicit InverseCoefficient(double x)
+    {
+        const double x2 = x * x;
+        if (x2 < 0.25) {
+            c = 1. / 12 + x2 * (1. / 720 + x2 * (1. / 30240 + x2 * (1. / 1209600 + x2 / 47900160)));
+            cdot = 1. / 360 +
+                   x2 * (1. / 7560 + x2 * (1. / 201600 + x2 * (1. / 5987520 + x2 * (691. / 130767436800))));
+        } else {
+            const double s = std::sin(x / 2), cot = std::cos(x / 2) / s;
+            c = (1 - x / 2 * cot) / x2;
+            cdot = ((x / (4 * s * s) - cot / 2) / x2 - 2 * c / x) / x;
+        }
+    }
+};
+
+}  // namespace
+
+void Bushing::add_rotations(const State& x, LoadDerivatives& out) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Vec3 psi = deflection(x).psi;
+    const Mat3 A_ij = bi.A.transpose() * bj.A, J_inverse = lie::right_jacobian_inverse(psi);
+    const Vec12 v = velocities(bi, bj);
+    const InverseCoefficient at(psi.norm());
+    Eigen::Matrix<double, 3, 12> of_psi = Eigen::Matrix<double, 3, 12>::Zero();
+    of_psi.middleCols<3>(3) = -J_inverse * A_ij.transpose();
+    of_psi.rightCols<3>() = J_inverse;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 e = Vec3::Unit(axis), of_j = J_inverse.row(axis), of_i = A_ij * of_j;
+        RowLoad row;
+        row.w << Vec3::Zero(), -of_i, Vec3::Zero(), of_j;
+        row.g = row.w;
+        // J_r(ψ)⁻ᵀ e = e - ψ × e/2 + c ψ × (ψ × e)
+        const Vec3 cross = psi.cross(e), twice = psi.cross(cross);
+        const Mat3 by_psi = 0.5 * lie::tilde(e) -
+                            at.c * (lie::tilde(cross) + lie::tilde(psi) * lie::tilde(e)) +
+                            at.cdot * twice * psi.transpose();
+        const Eigen::Matrix<double, 3, 12> of_row = by_psi * of_psi;
+        row.W.bottomRows<3>() = of_row;
+        row.W.middleRows<3>(3) = -A_ij * of_row;
+        row.W.block<3, 3>(3, 3) -= lie::tilde(of_i);
+        row.W.block<3, 3>(3, 9) += A_ij * lie::tilde(of_j);
+        const double k = coefficients.rotational_stiffness[axis], c = coefficients.rotational_damping[axis];
+        row.add_to(k * psi[axis] + c * row.w.dot(v), k, c, v, out);
+    }
 }
 
 double Bushing::potential_energy(const State& x) const

@@ -36,6 +36,7 @@ public:
     /// The three translations in the frame of body i, then the three components of psi
     int max_spring_rows() const override { return 6; }
     int spring_rows(const State& x, SpringRow* out) const override;
+    bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
@@ -47,6 +48,8 @@ private:
         Vec3 d, psi;
     };
     Deflection deflection(const State& x) const;
+    void add_translations(const State& x, LoadDerivatives& out) const;
+    void add_rotations(const State& x, LoadDerivatives& out) const;
 
     const int i, j;
     const Vec3 s_bar_i, s_bar_j;

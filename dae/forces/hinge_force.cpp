@@ -3,6 +3,7 @@
 #include "dae/forces/hinge_force.hpp"
 
 #include "dae/constraints/angle.hpp"
+#include "dae/forces/row_load.hpp"
 #include "lie/check.hpp"
 
 #include <cmath>
@@ -86,6 +87,34 @@ int HingeForce::spring_rows(const State& x, SpringRow* out) const
               .damping = damping,
               .gamma = omega_i.cross(axis).dot(motion(x, j).A * motion(x, j).omega_bar)};
     return 1;
+}
+
+std::pair<double, double> HingeForce::torque_derivatives(double theta, double thetadot) const
+{
+    const double step = 1e-6, step_rate = 1e-6 * std::max(1., std::abs(thetadot));
+    return {(torque(theta + step, thetadot) - torque(theta - step, thetadot)) / (2 * step),
+            (torque(theta, thetadot + step_rate) - torque(theta, thetadot - step_rate)) / (2 * step_rate)};
+}
+
+bool HingeForce::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Mat3 A_ij = bi.A.transpose() * bj.A;
+    const double theta = angle(x), thetadot = rate(x);
+    const auto [by_theta, by_thetadot] = torque_derivatives(theta, thetadot);
+    RowLoad row;
+    const Vec3 axis_j = A_ij.transpose() * axis_bar_i;
+    row.w << Vec3::Zero(), -axis_bar_i, Vec3::Zero(), axis_j;
+    // theta = atan2(v · u_j, u · u_j) with u_j in the frame of body i
+    const Vec3 u_j = A_ij * u_bar_j;
+    const double cosine = u_bar_i.dot(u_j), sine = v_bar_i.dot(u_j);
+    const Vec3 by_u_j = (cosine * v_bar_i - sine * u_bar_i) / (cosine * cosine + sine * sine);
+    row.g << Vec3::Zero(), by_u_j.cross(u_j), Vec3::Zero(), u_bar_j.cross(A_ij.transpose() * by_u_j);
+    row.W.block<3, 3>(9, 3) = -A_ij.transpose() * lie::tilde(axis_bar_i);
+    row.W.block<3, 3>(9, 9) = lie::tilde(axis_j);
+    out.setZero();
+    row.add_to(torque(theta, thetadot), by_theta, by_thetadot, velocities(bi, bj), out);
+    return true;
 }
 
 void HingeForce::add(const State& x, lie::Loads& out) const

@@ -35,7 +35,11 @@ public:
     /// Stiffness [N m/rad] and damping [N m s/rad] of the torque, for the stability limit of the step
     virtual std::pair<double, double> coefficients() const { return {0, 0}; }
 
+    /// ∂n/∂theta and ∂n/∂thetadot. The default computes central differences.
+    virtual std::pair<double, double> torque_derivatives(double theta, double thetadot) const;
+
     void add(const State& x, lie::Loads& out) const override;
+    bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     double potential_energy(const State& x) const override { return potential(angle(x)); }
 
     std::vector<Quantity> quantities() const override;

@@ -2,6 +2,7 @@
 /// Compliant limits of a distance and of an angle.
 #include "dae/forces/limits.hpp"
 
+#include "dae/forces/row_load.hpp"
 #include "dae/model_types.hpp"
 #include "lie/check.hpp"
 
@@ -44,6 +45,19 @@ int DistanceLimit::spring_rows(const State& x, SpringRow* out) const
               .pi_j = s_bar_j.cross(bj.A.transpose() * along),
               .stiffness = stop.stiffness};
     return 1;
+}
+
+bool DistanceLimit::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    const double l = d_ij(x).norm();
+    out.setZero();
+    if (!(l > 0) || stop.is_within(l)) return true;
+    const double ldot = d_ij(x).dot(d_ijdot(x)) / l;
+    const auto [by_l, by_ldot] = stop.derivatives(l, ldot);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    distance_row(bi, s_bar_i, bj, s_bar_j)
+        .add_to(stop.force(l, ldot), by_l, by_ldot, velocities(bi, bj), out);
+    return true;
 }
 
 double DistanceLimit::stable_step(const State& x, LoadEvaluation evaluation) const

@@ -26,6 +26,14 @@ struct Stop {
         if (q < minimum) return stiffness * (q - minimum) * std::max(0., 1 - damping * qdot);
         return 0;
     }
+    /// ∂force/∂q and ∂force/∂qdot
+    std::pair<double, double> derivatives(double q, double qdot) const
+    {
+        if (is_within(q)) return {0, 0};
+        const double sign = q > maximum ? 1 : -1, factor = 1 + sign * damping * qdot;
+        if (!(factor > 0)) return {0, 0};
+        return {stiffness * factor, stiffness * (q - (q > maximum ? maximum : minimum)) * sign * damping};
+    }
     bool is_within(double q) const { return !(q > maximum) && !(q < minimum); }
     double potential(double q) const
     {
@@ -48,6 +56,7 @@ public:
     int spring_rows(const State& x, SpringRow* out) const override;
     /// Infinite within the limits
     double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
+    bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     std::vector<Quantity> quantities() const override;
     void values(const State& x, double* out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
@@ -75,6 +84,10 @@ public:
     double potential(double theta) const override { return stop.potential(theta); }
     bool is_passive() const override { return true; }
     std::pair<double, double> coefficients() const override { return {stop.stiffness, 0}; }
+    std::pair<double, double> torque_derivatives(double theta, double thetadot) const override
+    {
+        return stop.derivatives(theta, thetadot);
+    }
     /// Infinite within the limits
     double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
 

@@ -8,6 +8,25 @@
 
 namespace hilda::dae {
 
+bool PrescribedForce::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    out.setZero();
+    const Mat3& A = x.body[body].A;
+    const Vec3 F = value(x.t);
+    if (frame == Frame::global)
+        out.block<3, 3>(3, 3) = lie::tilde(point_bar) * lie::tilde(A.transpose() * F);
+    else
+        out.block<3, 3>(0, 3) = -A * lie::tilde(F);
+    return true;
+}
+
+bool PrescribedTorque::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    out.setZero();
+    if (frame == Frame::global) out.block<3, 3>(3, 3) = lie::tilde(x.body[body].A.transpose() * value(x.t));
+    return true;
+}
+
 namespace {
 
 /// The body on which a prescribed force acts

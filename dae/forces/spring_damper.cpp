@@ -2,6 +2,7 @@
 /// Type spring-damper of the model file.
 #include "dae/forces/spring_damper.hpp"
 
+#include "dae/forces/row_load.hpp"
 #include "dae/model_types.hpp"
 
 #include <algorithm>
@@ -13,29 +14,42 @@ int SpringDamper::spring_rows(const State& x, SpringRow* out) const
 {
     if (!(distance(x).squaredNorm() > 0)) return 0;
     const Stretch at = stretch(x);
+    const auto [by_l, by_ldot] = coefficients(at, x.t);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j, omega_i = bi.A * bi.omega_bar,
                omega_j = bj.A * bj.omega_bar;
     const Vec3 ddot = velocity_at(bj, s_j) - velocity_at(bi, s_i),
                dddot = omega_j.cross(omega_j.cross(s_j)) - omega_i.cross(omega_i.cross(s_i));
-    SpringRow& row = out[0];
-    row = {.r_i = -at.along,
-           .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
-           .r_j = at.along,
-           .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
-           .stiffness = stiffness,
-           .damping = damping,
-           .gamma = at.along.dot(dddot) + (ddot.squaredNorm() - at.ldot * at.ldot) / at.l};
-    if (law) {
-        const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
-        const auto F = [&](double l, double ldot) {
-            const double variables[] = {l, ldot, x.t};
-            return law->value(variables);
-        };
-        row.stiffness += (F(at.l + step_l, at.ldot) - F(at.l - step_l, at.ldot)) / (2 * step_l);
-        row.damping += (F(at.l, at.ldot + step_ldot) - F(at.l, at.ldot - step_ldot)) / (2 * step_ldot);
-    }
+    out[0] = {.r_i = -at.along,
+              .pi_i = -s_bar_i.cross(bi.A.transpose() * at.along),
+              .r_j = at.along,
+              .pi_j = s_bar_j.cross(bj.A.transpose() * at.along),
+              .stiffness = by_l,
+              .damping = by_ldot,
+              .gamma = at.along.dot(dddot) + (ddot.squaredNorm() - at.ldot * at.ldot) / at.l};
     return 1;
+}
+
+std::pair<double, double> SpringDamper::coefficients(const Stretch& at, double t) const
+{
+    if (!law) return {stiffness, damping};
+    const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
+    const auto F = [&](double l, double ldot) {
+        const double variables[] = {l, ldot, t};
+        return law->value(variables);
+    };
+    return {stiffness + (F(at.l + step_l, at.ldot) - F(at.l - step_l, at.ldot)) / (2 * step_l),
+            damping + (F(at.l, at.ldot + step_ldot) - F(at.l, at.ldot - step_ldot)) / (2 * step_ldot)};
+}
+
+bool SpringDamper::load_derivatives(const State& x, LoadDerivatives& out) const
+{
+    const Stretch at = stretch(x);
+    const auto [by_l, by_ldot] = coefficients(at, x.t);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    out.setZero();
+    distance_row(bi, s_bar_i, bj, s_bar_j).add_to(at.f, by_l, by_ldot, velocities(bi, bj), out);
+    return true;
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include "lie/check.hpp"
 
 #include <optional>
+#include <utility>
 
 namespace hilda::dae {
 
@@ -64,6 +65,7 @@ public:
     /// Along the line from P to Q, with the derivatives of F in the state x. None while the points coincide.
     int max_spring_rows() const override { return 1; }
     int spring_rows(const State& x, SpringRow* out) const override;
+    bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     std::array<int, 2> bodies() const override { return {i, j}; }
     std::optional<PointPair> points() const override { return PointPair{i, j, s_bar_i, s_bar_j}; }
     int last_body() const override { return std::max(i, j); }
@@ -79,6 +81,8 @@ private:
         Vec3 along;         ///< unit vector from P to Q, global frame
         double l, ldot, f;  ///< [m], [m/s], [N]
     };
+    /// ∂f/∂l and ∂f/∂ldot; those of F by central differences
+    std::pair<double, double> coefficients(const Stretch& at, double t) const;
     Stretch stretch(const State& x) const
     {
         const Motion &bi = motion(x, i), &bj = motion(x, j);

@@ -29,6 +29,10 @@ public:
         return 0.5 * stiffness * twist * twist;
     }
     std::pair<double, double> coefficients() const override { return {stiffness, damping}; }
+    std::pair<double, double> torque_derivatives(double, double) const override
+    {
+        return {stiffness, damping};
+    }
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0; }
 };

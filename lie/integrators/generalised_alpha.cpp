@@ -22,18 +22,46 @@
 /// ρ = 1 the transient is not damped.
 ///
 /// The unknowns are z = (x, κ λ) with κ = β h² (1 - α_f)/(1 - α_m). The equations of motion are multiplied by
-/// κ. The Newton matrix without gyroscopic, stiffness, damping and curvature terms is then K; it is frozen at
-/// t_n. The iteration diverges if the stiffness of a load exceeds about m/h². State::history holds a_n of
-/// each body.
+/// κ. If no load depends on the state, or if there are algebraic variables or redundant rows, the Newton
+/// matrix is K, frozen at t_n: it is without gyroscopic, stiffness, damping and curvature terms. Otherwise it
+/// is the exact one,
+///
+///     | M + κ γ/(β h) D + κ K_t J_r   Cᵀ |      K_t, D: lie::Tangent;  J_r = J_r(h ω̄) in the columns of
+///     | C J_r                         0  |      the rotations
+///
+/// and its factors are kept from step to step. They are renewed if a correction decreases by a factor above
+/// 0.2, or after five iterations, and from then on in each iteration of the step. The start has a_0 from a
+/// trial step, because the loads one explicit step ahead are those of a large deflection of a stiff spring.
+///
+/// State::history holds a_n of each body, and with the exact matrix the step and the state of its factors.
 
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
+#include "lie/solver/tangent.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/saddle_step.hpp"
+#include "lie/steps/state_numbers.hpp"
 #include "lie/system.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
 
 namespace hilda::lie {
 namespace {
+
+/// The exact Newton matrix, and the step and the state of its factors
+struct ExactMatrix {
+    explicit ExactMatrix(const System& model)
+        : tangent(model), N(tangent, TangentMatrix<double>::Constraints::position)
+    {}
+
+    Tangent tangent;
+    TangentMatrix<double> N;
+    double h = 0;  ///< 0: not factored
+    long renewals = 0;
+    State at;
+};
 
 class GeneralisedAlpha final : public SaddleStep {
 public:
@@ -46,12 +74,15 @@ public:
         alpha_f = rho / (rho + 1);
         gamma = 0.5 + alpha_f - alpha_m;
         beta = 0.25 * (gamma + 0.5) * (gamma + 0.5);
+        if (!model.load_pattern().block.empty() && C.algebraic.empty() && !model.keeps_redundant_rows())
+            exact = std::make_unique<ExactMatrix>(model);
     }
 
     int step(State& x, double h) override
     {
         x_n = x;
         Attempt attempt(x, x_n);
+        if (exact) return step_with_exact_matrix(x, h, attempt);
         if (x_n.history.size() == 0)
             start(h);
         else
@@ -79,7 +110,134 @@ public:
         no_convergence("rA-genalpha", correction, x);
     }
 
+    Statistics statistics() const override
+    {
+        Statistics all = statistics_with(K);
+        if (!exact) return all;
+        all.refactorizations += exact->renewals;
+        all.condition = exact->N.matrix().reciprocal_condition();
+        return all;
+    }
+
 private:
+    int step_with_exact_matrix(State& x, double h, Attempt& attempt)
+    {
+        kappa = beta * h * h * (1 - alpha_f) / (1 - alpha_m);
+        int k = 0;
+        if (x_n.history.size() == 0) {
+            exact->h = 0;
+            k = start_with_exact_matrix(x, h);
+        } else {
+            read_history(h);
+        }
+        k += solve(x, h);
+        for (Motion& body : x.body) body.A = orthonormalised(body.A);
+        refuse_whole_turns(x, h, "rA-genalpha");
+        write_history(x);
+        return done(attempt, k);
+    }
+
+    /// a_0 = v̇_0 + (α_m - α_f) (v̇_1 - v̇_0), with v̇_1 of a trial step from a_0 = v̇_0
+    int start_with_exact_matrix(State& x, double h)
+    {
+        for (int i = 0; i < bodies; ++i) a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
+        const int k = solve(x, h);
+        for (int i = 0; i < bodies; ++i) {
+            Eigen::Matrix<double, 6, 1> ahead;
+            ahead << x.body[i].rddot, x.body[i].omegadot_bar;
+            a_n.segment<6>(6 * i) += (alpha_m - alpha_f) * (ahead - a_n.segment<6>(6 * i)).eval();
+        }
+        return k;
+    }
+
+    /// Sets x to the solution at t_{n+1} with the exact matrix. Returns the number of iterations.
+    int solve(State& x, double h)
+    {
+        constexpr double slow = 0.2;  // contraction with which kept factors are renewed
+        constexpr int most_with_kept_factors = 5;
+        // The error after an iteration is about θ/(1-θ) times its correction, with the contraction θ. Its
+        // part of the tolerance: velocities have the error of the positions, divided by h.
+        constexpr double part = 0.01;
+        predict(h, 0.5 * h * h, kappa);
+        x.t = x_n.t + h;
+        bool renew = exact->h != h, diverged = renew;
+        for (int k = 1; k <= settings.max_iterations; ++k) {
+            place(x, h);
+            // The loads of a bad iterate, such as those of a stiff spring far from its length, make a bad
+            // matrix.
+            if (renew) factor(diverged ? x_n : x, h), ++exact->renewals;
+            diverged = false;
+            set_residual(x);
+            exact->N.solve(e);
+            z -= e;
+            const double before = correction;
+            const bool small = converged(k, length_of_motion(e), constraint_part(e), 1);
+            const double theta = k > 1 ? correction / before : slow;
+            if (small && (theta >= 0.5 || theta * correction < part * (1 - theta) * settings.tolerance)) {
+                place(x, h);
+                return k;
+            }
+            diverged = !renew && !(theta < 1);
+            if (diverged) predict(h, 0.5 * h * h, kappa);
+            renew = renew || !(theta <= slow) || k >= most_with_kept_factors;
+        }
+        no_convergence("rA-genalpha", correction, x);
+    }
+
+    /// Factors the exact matrix in the state x for the step h.
+    void factor(const State& x, double h)
+    {
+        exact->h = 0;  // in case of an exception
+        exact->tangent.evaluate(x);
+        for (int i = 0; i < bodies; ++i) exact->N.rotation[i] = right_jacobian(h * x.body[i].omega_bar);
+        exact->N.assemble(kappa * gamma / (beta * h), kappa, 1);
+        exact->N.factor();
+        copy(x, exact->at);
+        exact->h = h;
+    }
+
+    template <class Block>
+    void transfer_history(double& h, State& at, const Block& block)
+    {
+        block(a_next.data(), a_next.size());
+        block(&h, 1);
+        block(&at.t, 1);
+        transfer(at, block);
+    }
+    void write_history(State& x)
+    {
+        Eigen::Index size = 0;
+        transfer_history(exact->h, exact->at, [&](const double*, Eigen::Index count) { size += count; });
+        x.history.resize(size);
+        double* to = x.history.data();
+        transfer_history(exact->h, exact->at,
+                         [&](const double* from, Eigen::Index count) { to = std::copy_n(from, count, to); });
+    }
+    /// Reads a_n. If the factors are not those of the history, renews them.
+    void read_history(double h)
+    {
+        copy(x_n, saved);
+        const double* from = x_n.history.data();
+        double saved_h = 0;
+        transfer_history(saved_h, saved, [&](double* to, Eigen::Index count) {
+            std::copy_n(from, count, to);
+            from += count;
+        });
+        a_n = a_next;
+        if (saved_h != h) {
+            exact->h = 0;
+            return;
+        }
+        bool same = exact->h == saved_h && exact->at.t == saved.t && exact->at.lambda == saved.lambda &&
+                    exact->at.discrete_state == saved.discrete_state &&
+                    exact->at.internal_state == saved.internal_state;
+        for (int i = 0; i < bodies && same; ++i) {
+            const Motion &p = exact->at.body[i], &q = saved.body[i];
+            same = p.r == q.r && p.A == q.A && p.rdot == q.rdot && p.omega_bar == q.omega_bar;
+        }
+        if (!same) factor(saved, h);
+    }
+
     /// a_0 = v̇_0 + (α_m - α_f) h v̈_0, where h v̈_0 is the difference of v̇_0 and the accelerations of a
     /// state one step ahead
     void start(double h)
@@ -132,7 +290,7 @@ private:
         }
         place_increments(x);
         place_algebraic(x, 1);
-        x.lambda = K.constraint_part(z) / kappa;
+        x.lambda = constraint_part(z) / kappa;
     }
 
     /// The residual e in the state x; the equations of motion multiplied by κ
@@ -140,12 +298,14 @@ private:
     {
         set_motion_residual(x, C);
         e *= kappa;
-        model.phi(x, K.constraint_part(e));
+        model.phi(x, constraint_part(e));
     }
 
     Rows C;  ///< Φ_r, Π̄ at the iterate
     double alpha_m = 0, alpha_f = 0, beta = 0, gamma = 0, kappa = 0;
     Eigen::VectorXd a_n, a_next;
+    std::unique_ptr<ExactMatrix> exact;  ///< null where the Newton matrix is K
+    State saved;                         ///< workspace: the state of the factors in a history
 };
 
 const bool registered = register_scheme<GeneralisedAlpha>(
@@ -156,7 +316,7 @@ const bool registered = register_scheme<GeneralisedAlpha>(
      .formulation = "rA",
      .unknowns = "increment of (r, A), beta' h^2 lambda",
      .source = "Bruls, Cardona, Arnold (2012)",
-     .loads = LoadEvaluation::extrapolated,
+     .loads = LoadEvaluation::implicit,
      .algebraic = true,
      .redundant = true,
      .rho_infinity = true});

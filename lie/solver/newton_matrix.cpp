@@ -9,7 +9,8 @@
 
 namespace hilda::lie {
 
-int NewtonMatrix::declare(int first_row, int first_column, int rows, int columns)
+template <class Scalar>
+int BasicNewtonMatrix<Scalar>::declare(int first_row, int first_column, int rows, int columns)
 {
     const int handle = static_cast<int>(row.size());
     for (int c = 0; c < columns; ++c)
@@ -20,7 +21,8 @@ int NewtonMatrix::declare(int first_row, int first_column, int rows, int columns
     return handle;
 }
 
-void NewtonMatrix::analyse(int n)
+template <class Scalar>
+void BasicNewtonMatrix<Scalar>::analyse(int n, std::vector<int> order_of_pivots)
 {
     for (int k = 0; k < n; ++k) declare(k, k, 1, 1);
     std::vector<int> order(row.size());
@@ -40,18 +42,29 @@ void NewtonMatrix::analyse(int n)
         last = k;
     }
     std::partial_sum(column_start.begin(), column_start.end(), column_start.begin());
-    klu.analyse(std::move(column_start), std::move(row_index));
+    klu.analyse(std::move(column_start), std::move(row_index), std::move(order_of_pivots));
 }
 
-void NewtonMatrix::factor()
+template <class Scalar>
+void BasicNewtonMatrix<Scalar>::factor()
 {
     if (!klu.refactor()) klu.factor("the Newton matrix");
 }
 
-void NewtonMatrix::solve(Eigen::VectorXd& b) const
+template <class Scalar>
+void BasicNewtonMatrix<Scalar>::factor_in_order()
+{
+    klu.factor_in_order("the Newton matrix");
+}
+
+template <class Scalar>
+void BasicNewtonMatrix<Scalar>::solve(Vector& b) const
 {
     klu.solve(b.data());
-    if (!std::isfinite(b.sum())) throw NonFinite("the solution of the Newton system is not finite");
+    if (!std::isfinite(std::abs(b.sum()))) throw NonFinite("the solution of the Newton system is not finite");
 }
+
+template class BasicNewtonMatrix<double>;
+template class BasicNewtonMatrix<std::complex<double>>;
 
 }  // namespace hilda::lie

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Explicit Runge-Kutta methods on the Lie group with error control and dense output.
+/// One-step methods on the Lie group with error control and dense output.
 
 #pragma once
 
 #include "lie/schemes.hpp"
+#include "lie/steps/radau_step.hpp"
 #include "lie/steps/runge_kutta_step.hpp"
 #include "lie/steps/step_control.hpp"
 
@@ -13,8 +14,9 @@
 
 namespace hilda::lie {
 
-/// Internal steps of a tableau, chosen from rtol and atol. step() evaluates the continuous extension at its
-/// end, so that the output instants do not affect the internal steps.
+/// Internal steps of a method, chosen from rtol and atol. Method is RungeKuttaStep or RadauStep. step()
+/// evaluates the continuous extension at its end, so that the output instants do not affect the internal
+/// steps.
 ///
 /// The last internal step contains the time of the node or ends there. Its stages, its end and the controller
 /// are in State::history of the node: a run continues from there with the same digits. The poses and
@@ -25,10 +27,17 @@ namespace hilda::lie {
 /// with a smaller length if its error estimate exceeds the tolerance, or if it fails. The pivots of the
 /// linear solver are then those of its first attempt, so that the rejected attempt has no effect on the
 /// digits.
-class AdaptiveStep final : public RungeKuttaStep {
+template <class Method>
+class AdaptiveStep final : public Method {
 public:
-    /// Throws InvalidInput if rtol or atol is not in [1e-14, 0.1].
-    AdaptiveStep(const System& model, const Settings& settings, const Tableau& tableau);
+    /// `more` are further arguments of the constructor of the method. Throws InvalidInput if rtol or atol is
+    /// not in [1e-14, 0.1].
+    template <class... More>
+    AdaptiveStep(const System& model, const Settings& settings, const More&... more)
+        : Method(model, settings, more...)
+    {
+        set_tolerance_limits();
+    }
 
     /// Throws NumericalFailure "step_too_small" if the error estimate of a step of the length of rounding
     /// errors exceeds the tolerance, or if 1000 internal steps cover less than h/1e6. A failure of such a
@@ -38,10 +47,15 @@ public:
     bool chooses_internal_steps() const override { return true; }
 
 private:
+    using Method::assemble_once, Method::bodies, Method::K, Method::model, Method::place, Method::scheme_name,
+        Method::set_accelerations, Method::set_slope, Method::settings, Method::theta, Method::unreached,
+        Method::x_n;
+
+    void set_tolerance_limits();
     void start(const State& x);
     int internal_step(double interval);
     /// One attempt from x_n to `end`. Sets the norm of its error estimate; infinite if it failed.
-    int attempt(double h, double& norm);
+    int try_step(double h, bool again, double& norm);
     void set_node(State& x, double t);
     /// Largest length of a step from x_n [s]
     double limit() const;
@@ -51,17 +65,20 @@ private:
     void transfer(const Block& block);
     double rms(const Eigen::VectorXd& of) const;
 
-    const double rtol, atol;
+    double rtol = 0, atol = 0;
     State end;          ///< of the last internal step, which starts at x_n
     double length = 0;  ///< of that step [s]; 0 at a start
     bool has_all_stages = false;
     StepControl control;
     State node;  ///< workspace: a state inside the step
-    Eigen::VectorXd tolerance, change;
+    Eigen::VectorXd tolerance, change, rate, next_rate;
     State pivots_before;         ///< the pivots at the beginning of the step
     long factorizations = 0;     ///< at the time of pivots_before
     std::string status, reason;  ///< of the last attempt if it failed; otherwise empty
 };
+
+extern template class AdaptiveStep<RungeKuttaStep>;
+extern template class AdaptiveStep<RadauStep>;
 
 /// Adds the scheme of a tableau to the list: RungeKuttaStep with a fixed step, and AdaptiveStep as its
 /// adaptive form.
@@ -71,7 +88,7 @@ bool register_runge_kutta(Scheme scheme)
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
-        return std::make_unique<AdaptiveStep>(system, settings, tableau());
+        return std::make_unique<AdaptiveStep<RungeKuttaStep>>(system, settings, tableau());
     };
     scheme.adaptive_form = std::make_shared<const Scheme>(std::move(adaptive));
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {

@@ -2,6 +2,7 @@
 #include "lie/steps/runge_kutta_step.hpp"
 
 #include "lie/steps/projection.hpp"
+#include "lie/steps/step_control.hpp"
 #include "lie/system.hpp"
 
 #include <cmath>
@@ -34,6 +35,15 @@ int RungeKuttaStep::advance(State& x, double h)
     model.update_alpha(x);
     const int k = finish(x, tableau.name);
     set_slope(x, slope.col(end));
+    return k;
+}
+
+int RungeKuttaStep::attempt(State& end, double h, double rtol, double atol, bool /*again*/,
+                            Eigen::VectorXd& tolerance, double& norm)
+{
+    const int k = advance(end, h);
+    set_tolerances(x_n, end, rtol, atol, tolerance);
+    norm = error(h, tolerance);
     return k;
 }
 

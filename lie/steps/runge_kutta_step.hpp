@@ -30,6 +30,20 @@ protected:
     /// Computes the stages that only interpolate() needs. x is workspace.
     void add_stages(State& x, double h);
 
+    // Interface of AdaptiveStep
+    const std::string& scheme_name() const { return tableau.name; }
+    /// The error estimate behaves like h to this power.
+    int control_order() const { return tableau.order; }
+    /// One attempt from x_n to `end`, and the norm of its error estimate
+    int attempt(State& end, double h, double rtol, double atol, bool again, Eigen::VectorXd& tolerance,
+                double& norm);
+    /// Calls block(numbers, count) for the stages of the last step.
+    template <class Block>
+    void transfer_stages(const Block& block)
+    {
+        block(slope.data(), slope.size());
+    }
+
     const Tableau& tableau;
     Eigen::MatrixXd slope;  ///< column i: d/dt (r, θ, ṙ, ω̄) of stage i
 

@@ -38,7 +38,7 @@ STYLES = {
     "rA-genalpha": ("#cc79a7", "P"), "rA-rattle": ("#8c6bb1", "X"), "rA-rkmk-4": ("#e69f00", "*"),
     "rA-rattle-4": ("#bcbddc", "d"), "rA-rattle-6": ("#9e9ac8", "p"), "rA-rattle-8": ("#54278f", "8"),
     "rA-rattle-gbs-4": ("#c7e9c0", "d"), "rA-rattle-gbs-6": ("#74c476", "p"), "rA-rattle-gbs-8": ("#006d2c", "8"),
-    "rA-dp-5": ("#b2182b", "d"), "rA-dop853": ("#1a9850", "p"),
+    "rA-dp-5": ("#b2182b", "d"), "rA-dop853": ("#1a9850", "p"), "rA-radau-5": ("#01665e", "h"),
     "ida-rp": ("#000000", "h"), "ida-rp-baumgarte": ("#444444", "H"), "ida-rp-index1": ("#888888", "8"),
     "evolving": ("#0072b2", "o"), "evolving, KLU": ("#56b4e9", "^"), "evolving, text": ("#332288", "d"),
     "DVI": ("#d55e00", "s"), "DVI, not stabilised": ("#e69f00", "v"), "DVI, text": ("#cc79a7", "<"), "DEM": ("#009e73", "P"),

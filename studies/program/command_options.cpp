@@ -50,7 +50,8 @@ const std::vector<SettingOption>& setting_options()
          "change the body frame when Euler angles approach a singular orientation, instead of stopping",
          [](auto& s, Text, Text) { s.reparametrise = true; }},
         {"--rtol", "RTOL",
-         "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, ida-rp), 1e-14 to 0.1; "
+         "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, rA-radau-5, ida-rp), 1e-14 "
+         "to 0.1; "
          "default: 1e-10",
          [](auto& s, Text option, Text text) { s.rtol = relative_tolerance(option, text); }},
         {"--atol", "ATOL",

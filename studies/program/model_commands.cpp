@@ -29,7 +29,8 @@ void add_run_options(CLI::App& c, RunArguments& to)
                default_integrator,
            append(to.integrators, integrators));
     value(c, "--step", "H",
-          "step size [s]; rA-dp-5 and rA-dop853 choose their own without it, ida-rp always; default: 1e-3",
+          "step size [s]; rA-dp-5, rA-dop853 and rA-radau-5 choose their own without it, ida-rp always; "
+          "default: 1e-3",
           assign(o.step, positive_number));
     value(c, "--end", "T", "end time [s]; default: that of the model, with --resume that of the run",
           assign(o.end, nonnegative_number));

@@ -2,6 +2,8 @@
 /// Variations of a model, assembled from its blocks and forces, compared with the central differences that
 /// are the default of lie::System.
 
+#include "dae/forces/bushing.hpp"
+#include "dae/forces/limits.hpp"
 #include "dae/forces/prescribed.hpp"
 #include "dae/forces/spring_damper.hpp"
 #include "dae/forces/torsion_spring.hpp"
@@ -11,6 +13,8 @@
 #include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
+
+#include <typeinfo>
 
 using namespace hilda;
 using namespace hilda::dae;
@@ -112,4 +116,92 @@ TEST_CASE("the variation of the loads is their derivative", "[dae][variations]")
                     if (block.on == on && block.by == by) sum += block.d.col(c);
                 CHECK((sum - tests::derivative(loads)).cwiseAbs().maxCoeff() < 1e-6);
             }
+}
+
+namespace {
+
+std::array<io::Expression, 3> components()
+{
+    return {io::Expression("2", {"t"}), io::Expression("1-t", {"t"}), io::Expression("-0.5", {"t"})};
+}
+
+/// Each force law between two bodies, in each of its regimes
+std::vector<std::unique_ptr<Force>> forces_between(int i, int j, tests::Random& random, const State& x,
+                                                   double turn)
+{
+    std::vector<std::unique_ptr<Force>> all;
+    const Vec3 s_i = random.vector(), s_j = random.vector(), axis = random.unit();
+    const auto add = [&](auto force) { all.push_back(std::make_unique<decltype(force)>(std::move(force))); };
+    add(SpringDamper(i, s_i, j, s_j, 30, 4, 0.2));
+    add(SpringDamper(i, s_i, j, s_j, 30, 4, 0.2, io::Expression("-5*ldot^3+l^2*ldot", {"l", "ldot", "t"})));
+    for (const auto& [minimum, maximum] : {std::pair(-1., 1e-2), {1e2, 1e3}, {0., 1e3}})
+        for (const double damping : {0.1, -0.1, 1e3})
+            add(DistanceLimit(i, s_i, j, s_j, {minimum, maximum, 40, damping}));
+    // The axes of the forces between hinged bodies are parallel in another state than x.
+    State start = x;
+    if (j == ground)
+        start.body[i].A.setIdentity();
+    else
+        start.body[j].A = i == ground ? Mat3(Mat3::Identity()) : x.body[i].A;
+    add(TorsionSpring(i, axis, j, axis, 7, 0.3, 0.1, start));
+    for (const auto& [minimum, maximum] : {std::pair(-10., -5.), {5., 10.}, {-10., 10.}})
+        for (const double damping : {0.1, -0.1})
+            add(AngleLimit(i, axis, j, axis, {minimum, maximum, 40, damping}, start));
+    // The rotation of the bushing in the state x is `turn`.
+    start = x;
+    const Mat3 back = lie::exp(turn * random.unit());
+    (i == ground ? start.body[j] : start.body[i]).A = (i == ground ? x.body[j] : x.body[i]).A * back;
+    add(Bushing(i, s_i, j, s_j, {{3, 4, 5}, {0.3, 0.2, 0.1}, {2, 1, 3}, {0.1, 0.4, 0.2}}, start));
+    if (i == ground) return all;
+    for (const Frame frame : {Frame::global, Frame::body}) {
+        add(PrescribedForce(i, s_i, frame, components()));
+        add(PrescribedTorque(i, frame, components()));
+    }
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("the closed formulas of the derivatives of each force are its differences", "[dae][variations]")
+{
+    tests::Random random(GENERATE(range(1u, 6u)));
+    State x = random.state(2);
+    x.t = 0.3;
+    const double turn = GENERATE(0., 1e-6, 0.3, 0.6, 2.5);
+    const auto [i, j] =
+        GENERATE(std::pair(0, 1), std::pair(1, 0), std::pair(ground, 1), std::pair(0, ground));
+    for (const auto& force : forces_between(i, j, random, x, turn)) {
+        x.discrete_state.assign(static_cast<size_t>(force->discrete_states()), 0);
+        Force::LoadDerivatives closed;
+        closed.setConstant(std::nan(""));
+        REQUIRE(force->load_derivatives(x, closed));
+        const auto bodies = force->bodies();
+        for (int by = 0; by < 2; ++by)
+            for (int c = 0; c < 12 && bodies[by] != ground; ++c) {
+                const auto loads = [&](double s) {
+                    State y = x;
+                    Motion& body = y.body[bodies[by]];
+                    Eigen::Matrix<double, 6, 1> pose = Eigen::Matrix<double, 6, 1>::Zero();
+                    if (c < 6)
+                        pose[c] = s;
+                    else
+                        (c < 9 ? body.rdot : body.omega_bar)[c % 3] += s;
+                    body = tests::displaced(body, pose);
+                    lie::Loads out(2);
+                    force->add(y, out);
+                    Eigen::Matrix<double, 12, 1> both = Eigen::Matrix<double, 12, 1>::Zero();
+                    for (int on = 0; on < 2; ++on)
+                        if (const int b = bodies[on]; b != ground)
+                            both.segment<6>(6 * on) << out.F[b], out.n_bar[b];
+                    return both;
+                };
+                Eigen::Matrix<double, 12, 1> column = closed.col((c < 6 ? 0 : 6) + 6 * by + c);
+                for (int on = 0; on < 2; ++on)
+                    if (bodies[on] == ground) column.segment<6>(6 * on).setZero();
+                const Eigen::Matrix<double, 12, 1> differences = tests::derivative(loads);
+                INFO(typeid(*force).name()
+                     << ", bodies " << i << ' ' << j << ", turn " << turn << ", component " << c);
+                CHECK((column - differences).norm() < 1e-6 * (1 + differences.norm()));
+            }
+    }
 }

@@ -12,7 +12,7 @@ import matrix
 
 MODELS = {"double_pendulum": 4, "four_link": 4, "slider_crank": 3, "n_pendulum_2_spin": 3, "andrews_squeezer": 0.03}
 INTEGRATORS = {"rA-half-1": 1e-3, "rA-half-1-momentum": 1e-3, "rA-full-1": 1e-3, "rA-rattle": 1e-3, "rA-rkmk-4": 1e-3,
-               "rA-dp-5": "adaptive", "rA-dop853": "adaptive"}
+               "rA-dp-5": "adaptive", "rA-dop853": "adaptive", "rA-radau-5": "adaptive"}
 
 
 def options(parser):

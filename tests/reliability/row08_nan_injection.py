@@ -7,7 +7,8 @@ import json
 import matrix
 import model as models
 
-INTEGRATORS = ("rA-half-1", "rA-half-1-momentum", "rA-full-1", "rA-rattle", "rA-rkmk-4", "rA-dp-5", "rA-dop853")
+INTEGRATORS = ("rA-half-1", "rA-half-1-momentum", "rA-full-1", "rA-rattle", "rA-rkmk-4", "rA-dp-5", "rA-dop853",
+               "rA-radau-5")
 STEP = 5e-4  # below the stability limit of the contact of the model, 9.9e-4 s for schemes that extrapolate velocities
 
 

@@ -72,6 +72,7 @@ public:
             out.at(k, 0, 0).bottomRightCorner<3, 3>() =
                 lie::tilde(s_bar) * lie::tilde(x.body[0].A.transpose() * Vec3::Unit(k));
     }
+    void nu_variation(const lie::State&, lie::Rows&) const override {}
     double potential_energy(const lie::State& x) const override
     {
         return free ? 0 : 2.0 * 9.81 * x.body[0].r.z();

@@ -103,7 +103,7 @@ TEST_CASE("an adaptive run that passes a configuration of lower rank warns once"
 TEST_CASE("a scheme with both forms has adaptive steps without --step", "[studies][run]")
 {
     const Scratch in;
-    for (const std::string name : {"rA-dp-5", "rA-dop853"}) {
+    for (const std::string name : {"rA-dp-5", "rA-dop853", "rA-radau-5"}) {
         CAPTURE(name);
         const std::vector<std::string> run = {
             "run", "double_pendulum_moving", "--end", "0.5", "--integrator", name, "--force", "--output",
@@ -137,14 +137,14 @@ TEST_CASE("a scheme with both forms has adaptive steps without --step", "[studie
         refused({"--error"}, "chooses its own steps; --error");
         check_refused(in, {"run", "double_pendulum", "--integrator", "rA-rkmk-4", "--rtol", "1e-6"}, 2,
                       "run: no selected integrator uses --rtol; it is for ida-rp, ida-rp-baumgarte, "
-                      "ida-rp-index1, rA-dop853, rA-dp-5");
+                      "ida-rp-index1, rA-dop853, rA-dp-5, rA-radau-5");
     }
 }
 
 TEST_CASE("an adaptive run in two parts has the bytes of one run", "[studies][run][resume]")
 {
     const Scratch in;
-    for (const std::string name : {"rA-dp-5", "rA-dop853"})
+    for (const std::string name : {"rA-dp-5", "rA-dop853", "rA-radau-5"})
         for (const std::string model : {"n_pendulum_2_spin", "slider_crank"}) {
             const std::vector<std::string> run = {
                 "run",   model,     "--integrator",    name, "--rtol", "1e-7", "--interval",
@@ -164,7 +164,7 @@ TEST_CASE("an adaptive run in two parts has the bytes of one run", "[studies][ru
         }
 }
 
-TEST_CASE("adaptive steps of an explicit scheme refuse contacts and loads with a history by name",
+TEST_CASE("adaptive steps of a scheme on the group refuse contacts and loads with a history by name",
           "[studies][run]")
 {
     const Scratch in;
@@ -172,6 +172,8 @@ TEST_CASE("adaptive steps of an explicit scheme refuse contacts and loads with a
         check_refused(
             in, {"run", model, "--integrator", "rA-dp-5", "--rtol", "1e-6"}, 3,
             "integrator rA-dp-5: adaptive steps do not support contacts; use a fixed step, got contact '");
+        check_refused(in, {"run", model, "--integrator", "rA-radau-5", "--rtol", "1e-6"}, 3,
+                      "integrator rA-radau-5: ");
         CHECK(call(in, {"run", model, "--integrator", "rA-dp-5", "--step", "1e-5", "--end", "1e-4", "--force",
                         "--output", "a"})
                   .code == 0);

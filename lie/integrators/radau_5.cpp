@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// rA-radau-5: the three-stage Radau IIA method of order 5 with the velocity constraints at its stages.
+///
+/// Hairer, Wanner (1996), Solving Ordinary Differential Equations II, Secs. IV.8 and VII.4.
+/// lie/steps/radau_step.hpp has the variables, the Newton matrices and the projection.
+
+#include "lie/steps/adaptive_step.hpp"
+
+namespace hilda::lie {
+namespace {
+
+template <class Method>
+std::unique_ptr<Integrator> construct(const System& system, const Settings& settings)
+{
+    return std::make_unique<Method>(system, settings);
+}
+
+bool register_radau(Scheme scheme)
+{
+    Scheme adaptive = scheme;
+    adaptive.adaptive = true;
+    adaptive.construct = &construct<AdaptiveStep<RadauStep>>;
+    scheme.adaptive_form = std::make_shared<const Scheme>(std::move(adaptive));
+    scheme.construct = &construct<RadauStep>;
+    return io::Registry<Scheme>::add(std::move(scheme));
+}
+
+const bool registered = register_radau(
+    {.name = "rA-radau-5",
+     .description = "implicit Radau IIA of order 5, index 2, with projection; adaptive or fixed step",
+     .order = 5,
+     .order_lambda = 5,
+     .formulation = "rA",
+     .unknowns = "stages of r', omega, lambda",
+     .source = "Hairer, Wanner (1996), on the Lie group",
+     .loads = LoadEvaluation::implicit,
+     .nonholonomic = true});
+
+}  // namespace
+}  // namespace hilda::lie

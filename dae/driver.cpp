@@ -6,6 +6,7 @@
 #include "dae/curves/sampled_curve.hpp"
 #include "io/json.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace hilda::dae {
@@ -21,6 +22,8 @@ Driver::Driver(std::string_view text) : expression(std::make_shared<const io::Ex
 Driver::Driver(std::shared_ptr<const SampledCurve> samples) : constant(false), curve(std::move(samples)) {}
 
 io::Jet Driver::jet(double t) const { return curve ? curve->jet(t) : expression->jet(t); }
+
+double Driver::last_time() const { return curve ? curve->last() : std::numeric_limits<double>::infinity(); }
 
 const std::string& Driver::text() const
 {

@@ -32,6 +32,8 @@ public:
     io::Jet jet(double t) const;
 
     bool is_constant() const { return constant; }
+    /// Last time of the samples of a curve [s]; infinite for an expression
+    double last_time() const;
     /// Of the expression; empty for a curve
     const std::string& text() const;
 

@@ -197,6 +197,15 @@ bool Model::internal_states_are_history() const
            });
 }
 
+Model::MotionEnd Model::motion_end() const
+{
+    MotionEnd end;
+    for (const Row& r : row)
+        if (const Driver* f = r.block->prescribed(); f != nullptr && f->last_time() < end.t)
+            end = {f->last_time(), r.constraint};
+    return end;
+}
+
 Model::StableStep Model::stable_step(const State& x, LoadEvaluation evaluation) const
 {
     StableStep smallest;

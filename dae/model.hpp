@@ -129,6 +129,13 @@ public:
     /// The same for a scheme, which may evaluate springs implicitly
     StableStep stable_step(const State& x, const lie::Scheme& scheme) const;
 
+    /// Earliest end of the motions that drivers prescribe by samples
+    struct MotionEnd {
+        double t = std::numeric_limits<double>::infinity();  ///< [s]
+        int constraint = -1;  ///< number of the constraint, -1 if there are no samples
+    };
+    MotionEnd motion_end() const;
+
     /// A scalar row of a constraint. It is part of the equations, or removed from them as redundant.
     struct Row {
         std::unique_ptr<Block> block;

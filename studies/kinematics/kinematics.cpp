@@ -127,6 +127,10 @@ int run_kinematics(const KinematicsOptions& options)
                         "hilda run",
                         d.name, command, start.degrees_of_freedom,
                         options.inverse ? "prescribe more motions by drivers or --motion" : "add drivers"));
+    if (const dae::Model::MotionEnd motion = d.model->motion_end(); motion.t < end * (1 - 1e-12))
+        throw io::UsageError(
+            fmt::format("{}: --end must be at most {} s, the last sample of the motion of '{}', got {}",
+                        command, motion.t, d.model->constraint_name(motion.constraint), end));
     const std::string directory =
         options.output.empty() ? "out/" + short_name(options.model) : options.output;
     io::check_output_directory(directory, options.force, io::force_overwrites);

@@ -234,6 +234,11 @@ RunSettings SingleRun::settings_of_run()
 void SingleRun::check_step(bool resumed) const
 {
     const dae::Model& model = *description.model;
+    if (const dae::Model::MotionEnd motion = model.motion_end();
+        motion.t < static_cast<double>(grid.steps) * grid.h * (1 - 1e-12))
+        throw io::UsageError(fmt::format(
+            "run: --end must be at most {} s, the last sample of the motion of '{}', got {}", motion.t,
+            model.constraint_name(motion.constraint), static_cast<double>(grid.steps) * grid.h));
     if (scheme.adaptive) {
         for (const auto& force : model.forces())
             if (force->internal_states() > 0)

@@ -169,8 +169,8 @@ TEST_CASE("a driver of a run can have samples in place of a formula", "[studies]
     check_refused(in, with(with({"run", "m.json", "--force", "--output", "r"}, samples), {}), 3,
                   "motion.csv");
     write(in / "motion.csv", table("angle", 100, [](double t) { return t * t; }));
-    check_refused(in, with({"run", "m.json", "--end", "1.5", "--force", "--output", "r"}, samples), 4,
-                  "a prescribed motion has samples from 0 s to 1 s; it is needed at 1.0");
+    check_refused(in, with({"run", "m.json", "--end", "1.5", "--force", "--output", "r"}, samples), 2,
+                  "run: --end must be at most 1 s, the last sample of the motion of 'motor', got 1.5");
 }
 
 TEST_CASE("wrong motions are refused with their place", "[studies][kinematics]")

@@ -41,7 +41,8 @@ void read(double t, const ConstVectorRef& y, lie::State& x)
 lie::Trajectory index1(const dae::Model& model, const lie::State& start, const std::vector<double>& instants,
                        const OdeTolerance& tolerance)
 {
-    if (6 * model.bodies() == model.rows())
+    // The number of rows is not the rank of a model that keeps redundant rows.
+    if (6 * model.bodies() == model.rows() && !model.keep_redundant)
         lie::reject("reference::index1",
                     "the model must have at least one degree of freedom; for a fully driven mechanism use "
                     "kinematic analysis (dae::Kinematics); degrees of freedom",

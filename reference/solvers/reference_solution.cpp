@@ -87,7 +87,7 @@ lie::Trajectory reference_solution(const dae::Model& model, const lie::State& st
             "adaptive steps; select an integrator as the reference (--reference NAME); number of internal "
             "states",
             start.internal_state.size());
-    if (6 * model.bodies() != model.rows()) return index1(model, start, instants);
+    if (6 * model.bodies() != model.rows() || model.keep_redundant) return index1(model, start, instants);
     dae::Kinematics kinematics(model);
     lie::Trajectory run;
     lie::State x = start;

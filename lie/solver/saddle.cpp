@@ -339,9 +339,9 @@ bool Saddle::is_rounding(const Eigen::VectorXd& change, const Eigen::VectorXd& o
     return change.head(6 * bodies).norm() <= rounding * of.head(6 * bodies).norm();
 }
 
-// With f = Cᵀ λ and g = 0 the multipliers of the regularised system are (S + ε D)⁻¹ S λ. This removes the part
-// of λ in the null space of S, and leaves the part that is D-orthogonal to it: the solution of minimum norm. An
-// eigenvalue σ of D⁻¹ S changes it by the factor 1 - (ε/(σ + ε))ⁿ after n steps.
+// With f = Cᵀ λ and g = 0 the multipliers of the regularised system are (S + ε D)⁻¹ S λ. This removes the
+// part of λ in the null space of S, and leaves the part that is D-orthogonal to it: the solution of minimum
+// norm. An eigenvalue σ of D⁻¹ S changes it by the factor 1 - (ε/(σ + ε))ⁿ after n steps.
 void Saddle::minimise_multipliers(Eigen::VectorXd& z)
 {
     if (!keeps) return;

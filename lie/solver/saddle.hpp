@@ -14,10 +14,10 @@
 ///
 /// Dependent rows. If the system keeps redundant rows (System::keeps_redundant_rows), the zero block of the
 /// multipliers is replaced by -ε D with D = diag(S), the diagonal of the Schur complement S = C M⁻¹ Cᵀ, C =
-/// (Φ_r, Π̄). Its Schur complement S + ε D is positive definite for all rows: no rank is decided and no pivot is
-/// rejected. It does not depend on the units and the scaling of the rows. solve() is then one correction of an
-/// iteration whose residuals are those of the rows without ε (augmented Lagrangian). solve_refined() contains
-/// the iteration.
+/// (Φ_r, Π̄). Its Schur complement S + ε D is positive definite for all rows: no rank is decided and no pivot
+/// is rejected. It does not depend on the units and the scaling of the rows. solve() is then one correction
+/// of an iteration whose residuals are those of the rows without ε (augmented Lagrangian). solve_refined()
+/// contains the iteration.
 ///
 /// A system with algebraic variables α has in addition the column Φ_α of the constraint rows and its
 /// transpose, with a zero diagonal block (Eq. 5.48). The α are the last unknowns.
@@ -58,8 +58,8 @@ public:
                     LinearSolver solver = LinearSolver::klu, const Rows& springs = {});
     ~Saddle();
 
-    /// For a system that keeps redundant rows: ε for the next assemble(), at least 1e-10. Other systems ignore
-    /// it.
+    /// For a system that keeps redundant rows: ε for the next assemble(), at least 1e-10. Other systems
+    /// ignore it.
     void set_shift(double epsilon) { shift = std::max(epsilon, smallest_shift); }
     /// Largest number of refinements of solve_in_step() with redundant rows. Two are enough for a scheme of
     /// order 2; near a singular configuration more of them only follow the residual of the last Newton step.
@@ -102,9 +102,9 @@ public:
     /// The solution in a step: with redundant rows solve_refined() without minimise_multipliers(), otherwise
     /// solve()
     void solve_in_step(Eigen::VectorXd& b);
-    /// Replaces the multipliers in z by those of minimum norm that exert the same forces Cᵀ λ. The norm is √(λᵀ D
-    /// λ), that of the multipliers of rows of length one in the metric of the mass. Does nothing if the system
-    /// does not keep redundant rows.
+    /// Replaces the multipliers in z by those of minimum norm that exert the same forces Cᵀ λ. The norm is
+    /// √(λᵀ D λ), that of the multipliers of rows of length one in the metric of the mass. Does nothing if
+    /// the system does not keep redundant rows.
     void minimise_multipliers(Eigen::VectorXd& z);
 
     /// out = K z

@@ -85,7 +85,8 @@ private:
     Eigen::VectorXd z_start, z_before, Phi, lambda;
     static constexpr int accelerated = 10;  ///< accelerated corrections before K is refreshed again
     Anderson anderson;
-    /// Whether each correction solves all rows. With redundant rows K differs from the matrix of the linear ones.
+    /// Whether each correction solves all rows. With redundant rows K differs from the matrix of the linear
+    /// ones.
     const bool corrects_velocity_rows;
     /// Whether slow corrections are accelerated. With algebraic variables or friction rows, whose scale
     /// differs from that of the bodies, K is refreshed at each iterate.

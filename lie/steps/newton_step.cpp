@@ -24,10 +24,10 @@ constexpr int most_redundant = 6;
 // Corrections of such a step may grow up to this factor near a singular configuration. The largest measured
 // is 5.
 constexpr double largest_growth = 100;
-// The shift ε = 10 (h rate)², rate² = max(|ω̄|², |ω̄̇|). In a step across a singular configuration an eigenvalue
-// σ of D⁻¹ S changes by about (h rate)² and the frozen matrix differs from that of the end of the step by as
-// much. A smaller factor than 4 lets the corrections grow; a larger one increases the error of the crossing,
-// which is proportional to ε.
+// The shift ε = 10 (h rate)², rate² = max(|ω̄|², |ω̄̇|). In a step across a singular configuration an
+// eigenvalue σ of D⁻¹ S changes by about (h rate)² and the frozen matrix differs from that of the end of the
+// step by as much. A smaller factor than 4 lets the corrections grow; a larger one increases the error of the
+// crossing, which is proportional to ε.
 constexpr double squared_rates = 10;
 // Limits the error of a correction in regular directions for large steps and fast rotors.
 constexpr double largest_shift = 0.01;

@@ -44,9 +44,9 @@ protected:
 
     /// Initial guess: by_v v + by_vdot v̇ for each body, with v = (ṙ, ω̄) of t_n; by_lambda λ_n; 0
     void predict(double by_v, double by_vdot, double by_lambda);
-    /// Sets the multipliers of the initial guess to zero if the system keeps redundant rows. For schemes whose
-    /// multipliers act in the directions of the rows of the iterate: their part in the null space of the frozen
-    /// matrix exerts a force there. It would grow from step to step.
+    /// Sets the multipliers of the initial guess to zero if the system keeps redundant rows. For schemes
+    /// whose multipliers act in the directions of the rows of the iterate: their part in the null space of
+    /// the frozen matrix exerts a force there. It would grow from step to step.
     void start_redundant();
     /// Poses of x from the increments in z: r = r_n + z_r, A = A_n exp(z_θ)
     void place_increments(State& x) const;

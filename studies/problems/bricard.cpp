@@ -2,8 +2,8 @@
 /// Bricard's mechanism: five rods and the ground in a closed loop with six revolute joints. Benchmark A04 of
 /// the library of González, Dopico, González and Cuadrado (2006).
 ///
-/// The rods of 1 m are edges of a cube at the start, and each joint axis is perpendicular to the two edges that
-/// meet there. By Grübler's count the mechanism has no freedom. Its geometry makes one of the 30 rows
+/// The rods of 1 m are edges of a cube at the start, and each joint axis is perpendicular to the two edges
+/// that meet there. By Grübler's count the mechanism has no freedom. Its geometry makes one of the 30 rows
 /// redundant, which leaves one. The redundant combination of rows changes during the motion: a row that is
 /// redundant at the start does not remain so. All rows are therefore kept.
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Stiff flyball governor: a shaft with a slider and two rods with point masses. Stiff spring-dampers take the
-/// place of the coupler rods. Benchmark A05 of the library of González, Dopico, González and Cuadrado (2006).
+/// Stiff flyball governor: a shaft with a slider and two rods with point masses. Stiff spring-dampers take
+/// the place of the coupler rods. Benchmark A05 of the library of González, Dopico, González and Cuadrado
+/// (2006).
 ///
-/// The y axis is vertical. The rods hang at 30 degrees below the horizontal from two hinges on the shaft, 0.1 m
-/// apart, and the springs connect their middles with the sides of the slider. All bodies rotate at 2 π rad/s.
+/// The y axis is vertical. The rods hang at 30 degrees below the horizontal from two hinges on the shaft, 0.1
+/// m apart, and the springs connect their middles with the sides of the slider. All bodies rotate at 2 π
+/// rad/s.
 
 #include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// N-four-bar mechanism: a row of N + 1 cranks on the ground, whose upper ends are connected by N couplers.
-/// Benchmark A02 of the library of González, Dopico, González and Cuadrado (2006), after Bayo and Avello (1994).
+/// Benchmark A02 of the library of González, Dopico, González and Cuadrado (2006), after Bayo and Avello
+/// (1994).
 ///
-/// All bars are of 1 m and 1 kg. The cranks stand upright at the start, and the upper end of the first one has
-/// the velocity -1 m/s along x. The mechanism has one degree of freedom. Where it is flat, N more appear for
-/// an instant: the constraints lose rank in this singular configuration. The revolute joints have 5 (3 N + 1)
-/// rows in space, of which 3 N (N = 2: 6 of 35) are redundant at all times.
+/// All bars are of 1 m and 1 kg. The cranks stand upright at the start, and the upper end of the first one
+/// has the velocity -1 m/s along x. The mechanism has one degree of freedom. Where it is flat, N more appear
+/// for an instant: the constraints lose rank in this singular configuration. The revolute joints have 5 (3 N
+/// + 1) rows in space, of which 3 N (N = 2: 6 of 35) are redundant at all times.
 
 #include "studies/problems/n_four_bar.hpp"
 
@@ -77,8 +78,8 @@ struct Angle {
 };
 
 /// Solution in the angle by rk8pd. Masses, moments of inertia, gravity and the initial angle are those of the
-/// model. A model that is not this mechanism, by the balance of loads at the start, has the reference solution
-/// of a model file.
+/// model. A model that is not this mechanism, by the balance of loads at the start, has the reference
+/// solution of a model file.
 lie::Trajectory in_angle(dae::Description& d, const std::vector<double>& instants)
 {
     const dae::Model& model = *d.model;

@@ -97,8 +97,8 @@ std::string singular_driver(const dae::Model& model, double t, double h)
     return {};
 }
 
-/// Whether a failure may be that of a singular configuration: an iteration or a factorisation that fails after
-/// rows were removed as redundant at the start, or for rows that are dependent at the node
+/// Whether a failure may be that of a singular configuration: an iteration or a factorisation that fails
+/// after rows were removed as redundant at the start, or for rows that are dependent at the node
 bool may_be_singular(const dae::Model& model, const lie::NumericalFailure& failure, double rcond)
 {
     if (model.keep_redundant || (failure.status != "newton_diverged" && failure.status != "singular_matrix"))

@@ -27,8 +27,8 @@ namespace {
 
 const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
-/// Row of N four-bar windows with N + 1 upright cranks and N couplers of 1 m and 1 kg. The joints are added in
-/// a random order; seed 0 is the natural order.
+/// Row of N four-bar windows with N + 1 upright cranks and N couplers of 1 m and 1 kg. The joints are added
+/// in a random order; seed 0 is the natural order.
 void four_bars(Model& model, State& x, int N, unsigned seed = 0)
 {
     const Vec3 J_bar(1. / 600, 1. / 12, 1. / 12);

@@ -352,6 +352,12 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
         }
     }
     check_contacts();
+    constexpr double largest_residual = 1e-5;  // [m or rad]
+    if (description.model->keeps_redundant_rows() && result.invariants.constraint_norm > largest_residual)
+        add_warning(
+            fmt::format("the constraints with redundant rows are violated by up to {:.1e} m or rad; "
+                        "reduce the step",
+                        result.invariants.constraint_norm));
 }
 
 void SingleRun::add_warning(const std::string& what)

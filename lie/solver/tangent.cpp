@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace hilda::lie {
@@ -26,6 +27,8 @@ std::vector<int> order_of_bodies(const Tangent& tangent)
         index.insert(index.end(), column.begin(), column.end());
         start.push_back(static_cast<int>(index.size()));
     }
+    std::iota(order.begin(), order.end(), 0);
+    if (index.empty()) return order;  // amd_order() refuses a null pointer
     amd_order(bodies, start.data(), index.data(), order.data(), nullptr, nullptr);
     return order;
 }

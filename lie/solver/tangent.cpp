@@ -108,7 +108,7 @@ void Tangent::evaluate_with_velocities(const State& x)
     system.nu_variation(x, d_nu);
     for (int k = 0; k < C.rows(); ++k)
         for (int b = 0; b < H.entries[k]; ++b) {
-            const auto n = static_cast<size_t>(C.start[k] + b);
+            const int n = C.start[k] + b;
             V[n] << -d_nu.entry[n].r.transpose(), -d_nu.entry[n].pi.transpose();
             for (int a = 0; a < H.entries[k]; ++a) {
                 const Motion& body = x.body[static_cast<size_t>(C.entry[C.start[k] + a].body)];

@@ -28,7 +28,7 @@ std::string swing()
 {
     std::string model = pendulum("", R"({"name": "damper", "type": "torsion-spring", "body_i": "ground",
  "body_j": "bar", "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0], "stiffness": 0, "damping": 0.5, "free_angle": 0})");
-    model.insert(model.rfind("}"), R"(, "events": [
+    model.insert(model.rfind('}'), R"(, "events": [
   {"name": "lowest", "value": "bar.ry"},
   {"name": "to the right", "value": "bar.ry", "direction": "rising"},
   {"name": "fast", "value": "bar.wx^2 - 4", "direction": "rising"}])");

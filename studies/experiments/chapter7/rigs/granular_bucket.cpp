@@ -54,7 +54,7 @@ const std::vector<Grid> grids = {{"quick",
                                    {"twice the step", 0.035, 0.6, 0.1, 8},
                                    {"less friction", 0.035, 0.2, 0, 4},
                                    {"shallow", 0.02, 0.6, 0.1, 4},
-                                   {"deep", 0.05, 0.6, 0.1, 4}}}};
+                                   {"deep", 0.043, 0.6, 0.1, 4}}}};
 
 struct Result {
     BucketTest test;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/events.hpp"
 
+#include "lie/bracket.hpp"
 #include "lie/integrator.hpp"
 #include "lie/system.hpp"
 
@@ -65,33 +66,20 @@ bool EventSearch::node(const State& to, const Report& report)
     return false;
 }
 
-/// Time from the last node to the zero of g [s], by regula falsi with the Illinois modification (Dowell and
-/// Jarratt 1971) and a bisection at each third step. The result is the end of the bracket at which g has its
-/// new sign.
+/// Time from the last node to the zero of g [s], to the last digits of t: the end of the bracket at which g
+/// has its new sign, or is zero
 double EventSearch::locate(const Event& event, double g_begin, double g_end, double h)
 {
-    double a = 0, b = h, g_a = g_begin, g_b = g_end;
+    constexpr int most_trials = 100;  // about ten are needed
     const double tolerance = 4 * std::numeric_limits<double>::epsilon() * (std::abs(saved.node.t) + h);
-    const bool ends_positive = g_end > 0;
-    int side = 0;
-    for (int k = 1; b - a > tolerance && k < 200; ++k) {
-        double c = k % 3 == 0 ? a + (b - a) / 2 : a - g_a * (b - a) / (g_b - g_a);
-        if (!(c > a && c < b)) c = a + (b - a) / 2;
-        // Not closer to an end than the tolerance: the bracket then shrinks from both sides.
-        c = std::clamp(c, a + std::min(tolerance, (b - a) / 4), b - std::min(tolerance, (b - a) / 4));
-        set_state(c, h);
-        const double g_c = event.value(x);
-        if ((g_c > 0) == ends_positive && g_c != 0) {
-            b = c, g_b = g_c;
-            if (side == 1) g_a /= 2;
-            side = 1;
-        } else {
-            a = c, g_a = g_c;
-            if (side == -1) g_b /= 2;
-            side = -1;
-        }
+    Bracket bracket(0, g_begin, h, g_end);
+    for (int k = 0; k < most_trials && bracket.b - bracket.a > tolerance; ++k) {
+        const double tau = bracket.next();
+        set_state(tau, h);
+        const double g_tau = event.value(x);
+        if (bracket.add(tau, g_tau) && g_tau == 0) break;
     }
-    return b;
+    return bracket.b;
 }
 
 /// Sets x to the complete state at this time after the last node.

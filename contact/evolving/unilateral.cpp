@@ -3,6 +3,7 @@
 
 #include "contact/compliant/contact_force.hpp"
 #include "dae/model.hpp"
+#include "lie/bracket.hpp"
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
@@ -358,28 +359,17 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, const State& from,
         g_a = gap(c, to);
         if (g_a < -tolerance) b = a, g_b = g_a;
     }
-    double s = b;
-    for (int k = 0, last = 0; k < max_gap_iterations; ++k) {
-        s = (a * g_b - b * g_a) / (g_b - g_a);
-        if (!(s > a && s < b)) s = 0.5 * (a + b);
+    lie::Bracket bracket(a, g_a, b, g_b);
+    for (int k = 0; k < max_gap_iterations && bracket.b - bracket.a > 1e-15 * h; ++k) {
+        const double s = bracket.next();
         try_step(from, to, s);
         const double g = gap(c, to);
         if (std::abs(g) <= tolerance) return s;
-        // regula falsi, Illinois variant: if the same end point remains twice, its value is halved
-        if (g < 0) {
-            b = s, g_b = g;
-            if (last < 0) g_a /= 2;
-            last = -1;
-        } else {
-            a = s, g_a = g;
-            if (last > 0) g_b /= 2;
-            last = 1;
-        }
-        if (!(b - a > 1e-15 * h)) break;
+        bracket.add(s, g);
     }
     // Rounding prevents a gap within the tolerance. Take the longest step known to have no overlap.
-    try_step(from, to, a);
-    return a;
+    try_step(from, to, bracket.a);
+    return bracket.a;
 }
 
 std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const lie::Scheme& scheme,

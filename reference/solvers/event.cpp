@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reference/solvers/event.hpp"
 
+#include "lie/bracket.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -11,8 +12,7 @@ namespace hilda::reference {
 
 namespace {
 
-// The Illinois variant of regula falsi needs about eight evaluations. 100 bisections alone would reduce the
-// bracket by 2^100.
+// Regula falsi needs about eight evaluations. 100 bisections alone would reduce the bracket by 2^100.
 constexpr int max_trials = 100;
 
 /// Locates the zero of g between (t_a, y_a) with g_a > 0 and (t, y) with g_b ≤ 0. On return t, y is the right
@@ -20,28 +20,16 @@ constexpr int max_trials = 100;
 void locate_zero(Ode& ode, double t_a, const Eigen::VectorXd& y_a, double g_a, double& t, VectorRef& y,
                  double g_b, const Event& g)
 {
-    double left = t_a, right = t;
-    int retained = 0;  // end of the bracket that the last trial retained: -1 left, 1 right, 0 none
+    lie::Bracket bracket(t_a, g_a, t, g_b);
     for (int trial = 0; trial < max_trials && g_b != 0; ++trial) {
-        if (right - left <=
-            4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(right), right - t_a))
+        if (bracket.b - bracket.a <=
+            4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(bracket.b), bracket.b - t_a))
             return;
-        double middle = right - g_b * (right - left) / (g_b - g_a);
-        if (!(middle > left && middle < right)) middle = left + 0.5 * (right - left);
         Eigen::VectorXd y_m = y_a;
         double t_m = t_a;
-        ode.advance(t_m, y_m, middle);
+        ode.advance(t_m, y_m, bracket.next());
         const double g_m = g(t_m, y_m);
-        if (g_m > 0) {
-            left = t_m, g_a = g_m;
-            if (retained == 1) g_b /= 2;  // Illinois: halve the value of an end retained twice
-            retained = 1;
-        } else {
-            right = t_m, g_b = g_m;
-            if (retained == -1) g_a /= 2;
-            retained = -1;
-            t = t_m, y = y_m;
-        }
+        if (bracket.add(t_m, g_m)) t = t_m, y = y_m, g_b = g_m;
     }
 }
 

@@ -3,6 +3,7 @@
 /// step.
 #include "dae/constraints/dp1.hpp"
 #include "dae/model.hpp"
+#include "lie/steps/state_numbers.hpp"
 
 namespace hilda::dae {
 
@@ -224,17 +225,6 @@ lie::LoadVariation Model::load_pattern() const
     return out;
 }
 
-namespace {
-
-/// The length of the history differs between the start and later steps, and loads do not depend on it.
-void copy_without_history(const State& from, State& to)
-{
-    to.t = from.t, to.body = from.body, to.alpha = from.alpha, to.lambda = from.lambda;
-    to.discrete_state = from.discrete_state, to.internal_state = from.internal_state;
-}
-
-}  // namespace
-
 void Model::load_variation(const State& x, lie::LoadVariation& out) const
 {
     if (out.block.empty()) return;
@@ -245,7 +235,7 @@ void Model::load_variation(const State& x, lie::LoadVariation& out) const
         const std::array<int, 2> bodies = f->bodies();
         if (bodies[0] == ground && bodies[1] == ground) continue;
         if (!f->load_derivatives(x, d)) {
-            if (!copied) copy_without_history(x, out.x);
+            if (!copied) lie::copy(x, out.x);
             copied = true;
             difference_loads(*f, x, out, d);
         }

@@ -106,7 +106,7 @@ public:
     /// the discrete and internal states of `before`.
     virtual void accepted(const State& /*before*/, State& /*after*/) const {}
     /// Whether the rows may be dependent, at all times or in singular configurations. The saddle matrix is
-    /// then regularised (Saddle::set_rate), and the multipliers are those of minimum norm.
+    /// then regularised (Saddle::set_shift), and the multipliers are those of minimum norm.
     virtual bool keeps_redundant_rows() const { return false; }
     /// Whether the solution depends on the history through State::internal_state, as with a friction law. If
     /// not, internal states only select among equivalent forms of the equations, such as the number of

@@ -3,7 +3,7 @@
 ///
 /// The tableau is that of DOP853: Hairer, Nørsett, Wanner (1993), Secs. II.5, II.10, with its error
 /// estimates of orders 5 and 3 and its continuous extension of order 7, which needs three further stages.
-/// lie/steps/explicit_step.hpp has the variables and the projection.
+/// lie/steps/local_coordinate_step.hpp has the variables and the projection.
 
 #include "lie/steps/adaptive_step.hpp"
 
@@ -80,7 +80,7 @@ const Tableau& dop853()
 
 namespace {
 
-const bool registered = register_runge_kutta<dop853>(
+const bool registered = register_with_adaptive_steps<RungeKuttaStep, dop853>(
     {.name = "rA-dop853",
      .description = "explicit Runge-Kutta 8(5,3) of Hairer with projection; adaptive or fixed step",
      .order = 8,

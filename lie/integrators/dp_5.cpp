@@ -2,8 +2,8 @@
 /// rA-dp-5: the Runge-Kutta method 5(4) of Dormand and Prince on the index-1 equations, with projection.
 ///
 /// Dormand, Prince (1980), J. Comput. Appl. Math. 6, 19-26. The continuous extension of order 4 is that of
-/// DOPRI5: Hairer, Nørsett, Wanner (1993), Sec. II.6. lie/steps/explicit_step.hpp has the variables and the
-/// projection.
+/// DOPRI5: Hairer, Nørsett, Wanner (1993), Sec. II.6. lie/steps/local_coordinate_step.hpp has the variables
+/// and the projection.
 
 #include "lie/steps/adaptive_step.hpp"
 
@@ -32,7 +32,7 @@ const Tableau& dormand_prince_5()
 
 namespace {
 
-const bool registered = register_runge_kutta<dormand_prince_5>(
+const bool registered = register_with_adaptive_steps<RungeKuttaStep, dormand_prince_5>(
     {.name = "rA-dp-5",
      .description = "explicit Runge-Kutta 5(4) of Dormand and Prince with projection; adaptive or fixed step",
      .order = 5,

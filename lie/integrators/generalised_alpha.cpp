@@ -133,7 +133,7 @@ private:
         k += solve(x, h);
         for (Motion& body : x.body) body.A = orthonormalised(body.A);
         refuse_whole_turns(x, h, "rA-genalpha");
-        write_history(x);
+        write_history(x, [this](const auto& block) { transfer_history(exact->h, exact->at, block); });
         return done(attempt, k);
     }
 
@@ -204,25 +204,13 @@ private:
         block(&at.t, 1);
         transfer(at, block);
     }
-    void write_history(State& x)
-    {
-        Eigen::Index size = 0;
-        transfer_history(exact->h, exact->at, [&](const double*, Eigen::Index count) { size += count; });
-        x.history.resize(size);
-        double* to = x.history.data();
-        transfer_history(exact->h, exact->at,
-                         [&](const double* from, Eigen::Index count) { to = std::copy_n(from, count, to); });
-    }
     /// Reads a_n. If the factors are not those of the history, renews them.
     void read_history(double h)
     {
         copy(x_n, saved);
-        const double* from = x_n.history.data();
         double saved_h = 0;
-        transfer_history(saved_h, saved, [&](double* to, Eigen::Index count) {
-            std::copy_n(from, count, to);
-            from += count;
-        });
+        lie::read_history(x_n, "rA-genalpha",
+                          [&](const auto& block) { transfer_history(saved_h, saved, block); });
         a_n = a_next;
         if (saved_h != h) {
             exact->h = 0;

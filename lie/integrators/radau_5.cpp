@@ -9,23 +9,7 @@
 namespace hilda::lie {
 namespace {
 
-template <class Method>
-std::unique_ptr<Integrator> construct(const System& system, const Settings& settings)
-{
-    return std::make_unique<Method>(system, settings);
-}
-
-bool register_radau(Scheme scheme)
-{
-    Scheme adaptive = scheme;
-    adaptive.adaptive = true;
-    adaptive.construct = &construct<AdaptiveStep<RadauStep>>;
-    scheme.adaptive_form = std::make_shared<const Scheme>(std::move(adaptive));
-    scheme.construct = &construct<RadauStep>;
-    return io::Registry<Scheme>::add(std::move(scheme));
-}
-
-const bool registered = register_radau(
+const bool registered = register_with_adaptive_steps<RadauStep>(
     {.name = "rA-radau-5",
      .description = "implicit Radau IIA of order 5, index 2, with projection; adaptive or fixed step",
      .order = 5,

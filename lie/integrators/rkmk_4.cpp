@@ -14,16 +14,16 @@
 /// The scheme is explicit: a stiff load limits the step.
 
 #include "lie/schemes.hpp"
-#include "lie/steps/explicit_step.hpp"
+#include "lie/steps/local_coordinate_step.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
 namespace {
 
-class Rkmk4 final : public ExplicitStep {
+class Rkmk4 final : public LocalCoordinateStep {
 public:
     Rkmk4(const System& model, const Settings& settings)
-        : ExplicitStep(model, settings), sum(12 * bodies), slope(12 * bodies), change(12 * bodies)
+        : LocalCoordinateStep(model, settings), sum(12 * bodies), slope(12 * bodies), change(12 * bodies)
     {}
 
     int step(State& x, double h) override

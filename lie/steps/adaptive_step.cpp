@@ -46,20 +46,11 @@ int AdaptiveStep<Method>::step(State& x, double h)
                "step; number of internal states",
                x.internal_state.size());
     copy(x, end), copy(x, x_n), copy(x, node);
-    Eigen::Index size = 0;
-    transfer([&](const double*, Eigen::Index count) { size += count; });
-    if (x.history.size() == 0) {
+    const auto numbers = [this](const auto& block) { transfer(block); };
+    if (x.history.size() == 0)
         start(x);
-    } else {
-        if (x.history.size() != size)
-            reject("integrator " + scheme_name(), "State::history must be that of the same scheme; its size",
-                   x.history.size());
-        const double* from = x.history.data();
-        transfer([&](double* numbers, Eigen::Index count) {
-            std::copy_n(from, count, numbers);
-            from += count;
-        });
-    }
+    else
+        read_history(x, scheme_name(), numbers);
     const double t = x.t + h;
     int iterations = 0;
     double checked = end.t;
@@ -71,9 +62,7 @@ int AdaptiveStep<Method>::step(State& x, double h)
         checked = end.t;
     }
     set_node(x, t);
-    x.history.resize(size);
-    double* to = x.history.data();
-    transfer([&](const double* numbers, Eigen::Index count) { to = std::copy_n(numbers, count, to); });
+    write_history(x, numbers);
     return iterations;
 }
 

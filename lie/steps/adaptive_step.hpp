@@ -80,19 +80,19 @@ private:
 extern template class AdaptiveStep<RungeKuttaStep>;
 extern template class AdaptiveStep<RadauStep>;
 
-/// Adds the scheme of a tableau to the list: RungeKuttaStep with a fixed step, and AdaptiveStep as its
-/// adaptive form.
-template <const Tableau& (*tableau)()>
-bool register_runge_kutta(Scheme scheme)
+/// Adds a method to the list: with a fixed step, and AdaptiveStep as its adaptive form. `more` are functions
+/// that return the further arguments of the constructor of the method.
+template <class Method, auto... more>
+bool register_with_adaptive_steps(Scheme scheme)
 {
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
-        return std::make_unique<AdaptiveStep<RungeKuttaStep>>(system, settings, tableau());
+        return std::make_unique<AdaptiveStep<Method>>(system, settings, more()...);
     };
     scheme.adaptive_form = std::make_shared<const Scheme>(std::move(adaptive));
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
-        return std::make_unique<RungeKuttaStep>(system, settings, tableau());
+        return std::make_unique<Method>(system, settings, more()...);
     };
     return io::Registry<Scheme>::add(std::move(scheme));
 }

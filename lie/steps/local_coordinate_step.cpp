@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lie/steps/explicit_step.hpp"
+#include "lie/steps/local_coordinate_step.hpp"
 
 namespace hilda::lie {
 
-ExplicitStep::ExplicitStep(const System& model, const Settings& settings)
+LocalCoordinateStep::LocalCoordinateStep(const System& model, const Settings& settings)
     : NodeStep(model, settings), theta(Eigen::VectorXd::Zero(3 * bodies))
 {}
 
-void ExplicitStep::set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const
+void LocalCoordinateStep::set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const
 {
     for (int i = 0; i < bodies; ++i) {
         const Motion& body = x.body[i];
@@ -16,7 +16,7 @@ void ExplicitStep::set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) 
     }
 }
 
-void ExplicitStep::place(State& x, const Eigen::VectorXd& d)
+void LocalCoordinateStep::place(State& x, const Eigen::VectorXd& d)
 {
     for (int i = 0; i < bodies; ++i) {
         const Motion& from = x_n.body[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Base class of the explicit Runge-Kutta methods on the index-1 equations.
+/// Base class of the one-step methods in the local coordinates of a step: explicit Runge-Kutta and Radau.
 
 #pragma once
 
@@ -9,15 +9,15 @@
 
 namespace hilda::lie {
 
-/// Stages of a Runge-Kutta-Munthe-Kaas method, and the projection at its end.
+/// Stages of a Runge-Kutta-Munthe-Kaas method. NodeStep::finish() is the projection at its end.
 ///
 ///     A = A_n exp(θ̃),   θ̇ = J_r(θ)⁻¹ ω̄,   (r̈, ω̄̇, λ) from K (r̈, ω̄̇, λ) = (F, τ̄, γ)
 ///
 /// is a differential equation for (r, θ, ṙ, ω̄) of each body.  Munthe-Kaas (1998), BIT 38, 92-111. The state
 /// at the beginning of the step is x_n; its accelerations are known.
-class ExplicitStep : public NodeStep {
+class LocalCoordinateStep : public NodeStep {
 public:
-    ExplicitStep(const System& model, const Settings& settings);
+    LocalCoordinateStep(const System& model, const Settings& settings);
 
 protected:
     using Vec12 = Eigen::Matrix<double, 12, 1>;

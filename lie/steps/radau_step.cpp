@@ -91,7 +91,8 @@ const double RadauStep::mu = 30 / (6 + root_81 - root_9);
 const std::complex<double> RadauStep::mu_complex = 1. / std::complex(p, -q);
 
 RadauStep::RadauStep(const System& model, const Settings& settings)
-    : ExplicitStep(model, settings), tangent(model), N(tangent, TangentMatrix<double>::Constraints::velocity),
+    : LocalCoordinateStep(model, settings), tangent(model),
+      N(tangent, TangentMatrix<double>::Constraints::velocity),
       N_complex(tangent, TangentMatrix<std::complex<double>>::Constraints::velocity),
       real(bodies, model.rows()), complex(bodies, model.rows()), velocity(6 * bodies), nu(model.rows()),
       error(12 * bodies), C(model.pattern())
@@ -108,36 +109,24 @@ int RadauStep::step(State& x, double h)
     x_n = x;
     Attempt attempt(x, x_n);
     copy(x, stage);
-    Eigen::Index size = 0;
-    transfer_stages([&](const double*, Eigen::Index count) { size += count; });
-    if (x.history.size() == 0) {
+    const auto numbers = [this](const auto& block) { transfer_stages(block); };
+    if (x.history.size() == 0)
         begin_run();
-    } else {
-        if (x.history.size() != size)
-            reject("integrator " + name, "State::history must be that of the same scheme; its size",
-                   x.history.size());
-        const double* from = x.history.data();
-        transfer_stages([&](double* numbers, Eigen::Index count) {
-            std::copy_n(from, count, numbers);
-            from += count;
-        });
-    }
+    else
+        read_history(x, name, numbers);
     begin_internal_step();
     factor(h);
     predict(h);
     for (int k = 1; k <= settings.max_iterations; ++k) {
         iterate(h);
-        nu = change.lambda.rowwise().norm();
-        if (!converged(k, h * change.v.norm(), nu, h * h)) continue;
+        real.dlambda = change.lambda.rowwise().norm();
+        if (!converged(k, h * change.v.norm(), real.dlambda, h * h)) continue;
         place_stage(x, stages - 1);
         x.t = x_n.t + h;
         assemble_once(x);
         finish(x, name);
         accept_stages(h);
-        x.history.resize(size);
-        double* to = x.history.data();
-        transfer_stages(
-            [&](const double* numbers, Eigen::Index count) { to = std::copy_n(numbers, count, to); });
+        write_history(x, numbers);
         return done(attempt, k);
     }
     place_stage(x, stages - 1);
@@ -405,7 +394,6 @@ double RadauStep::estimate(double h, bool again, const Eigen::VectorXd& toleranc
     stage.t = x_n.t;
     model.loads(stage, loads);
     model.variation(stage, C);
-    model.nu(stage, nu);
     for (int n = 0; n < bodies; ++n) {
         const Motion& body = stage.body[n];
         real.q.segment<6>(6 * n) << -body.rdot,
@@ -413,8 +401,8 @@ double RadauStep::estimate(double h, bool again, const Eigen::VectorXd& toleranc
         real.v.segment<6>(6 * n) << -loads.F[n], -tau_bar(n, body);
         velocity.segment<6>(6 * n) << body.rdot, body.omega_bar;
     }
-    nu = x_n.lambda + real.dlambda;
-    C.add_transpose(1, nu, real.v);
+    real.dlambda += x_n.lambda;
+    C.add_transpose(1, real.dlambda, real.v);
     model.nu(stage, nu);
     for (int k = 0; k < C.rows(); ++k) real.c[k] = C.dot(k, velocity) - nu[k];
     return add_stages();

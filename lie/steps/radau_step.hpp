@@ -4,7 +4,7 @@
 #pragma once
 
 #include "lie/solver/tangent.hpp"
-#include "lie/steps/explicit_step.hpp"
+#include "lie/steps/local_coordinate_step.hpp"
 
 #include <complex>
 #include <string>
@@ -26,10 +26,10 @@ namespace hilda::lie {
 /// The unknowns are the velocities and (h/μ) λ. The matrices are those of the state at the beginning of the
 /// step; they are factored once for each attempt. Newton's method starts from the collocation polynomial of
 /// the step before. The end of the step is projected onto the constraints of the positions and velocities,
-/// and has the accelerations and multipliers of the saddle system (ExplicitStep::finish).
+/// and has the accelerations and multipliers of the saddle system (NodeStep::finish).
 ///
 /// State::history holds the stages of the last step.
-class RadauStep : public ExplicitStep {
+class RadauStep : public LocalCoordinateStep {
 public:
     RadauStep(const System& model, const Settings& settings);
 

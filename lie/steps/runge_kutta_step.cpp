@@ -10,7 +10,7 @@
 namespace hilda::lie {
 
 RungeKuttaStep::RungeKuttaStep(const System& model, const Settings& settings, const Tableau& tableau)
-    : ExplicitStep(model, settings), tableau(tableau),
+    : LocalCoordinateStep(model, settings), tableau(tableau),
       slope(Eigen::MatrixXd::Zero(12 * bodies, tableau.all_stages())), change(12 * bodies),
       weights(static_cast<size_t>(tableau.all_stages()))
 {}

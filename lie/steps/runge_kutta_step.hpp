@@ -3,13 +3,13 @@
 
 #pragma once
 
-#include "lie/steps/explicit_step.hpp"
+#include "lie/steps/local_coordinate_step.hpp"
 #include "lie/steps/tableau.hpp"
 
 namespace hilda::lie {
 
 /// One step of a tableau, with projection. As an integrator it takes steps of the given length.
-class RungeKuttaStep : public ExplicitStep {
+class RungeKuttaStep : public LocalCoordinateStep {
 public:
     RungeKuttaStep(const System& model, const Settings& settings, const Tableau& tableau);
 

@@ -3,7 +3,11 @@
 
 #pragma once
 
+#include "lie/check.hpp"
 #include "lie/state.hpp"
+
+#include <algorithm>
+#include <string>
 
 namespace hilda::lie {
 
@@ -29,6 +33,33 @@ void transfer(State& x, const Block& block)
     block(x.lambda.data(), x.lambda.size());
     for (int& state : x.discrete_state) transfer_integer(state, block);
     block(x.internal_state.data(), static_cast<Eigen::Index>(x.internal_state.size()));
+}
+
+/// Makes State::history of the numbers for which numbers(block) calls block(numbers, count).
+template <class Numbers>
+void write_history(State& x, const Numbers& numbers)
+{
+    Eigen::Index size = 0;
+    numbers([&](const double*, Eigen::Index count) { size += count; });
+    x.history.resize(size);
+    double* to = x.history.data();
+    numbers([&](const double* from, Eigen::Index count) { to = std::copy_n(from, count, to); });
+}
+
+/// Reads them. Throws InvalidInput if their count is another one.
+template <class Numbers>
+void read_history(const State& x, const std::string& scheme, const Numbers& numbers)
+{
+    Eigen::Index size = 0;
+    numbers([&](const double*, Eigen::Index count) { size += count; });
+    if (x.history.size() != size)
+        reject("integrator " + scheme, "State::history must be that of the same scheme; its size",
+               x.history.size());
+    const double* from = x.history.data();
+    numbers([&](double* to, Eigen::Index count) {
+        std::copy_n(from, count, to);
+        from += count;
+    });
 }
 
 }  // namespace hilda::lie

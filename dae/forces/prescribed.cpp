@@ -12,7 +12,7 @@ bool PrescribedForce::load_derivatives(const State& x, LoadDerivatives& out) con
 {
     out.setZero();
     const Mat3& A = x.body[body].A;
-    const Vec3 F = value(x.t);
+    const Vec3 F = value_at(components, x.t);
     if (frame == Frame::global)
         out.block<3, 3>(3, 3) = lie::tilde(point_bar) * lie::tilde(A.transpose() * F);
     else
@@ -23,7 +23,8 @@ bool PrescribedForce::load_derivatives(const State& x, LoadDerivatives& out) con
 bool PrescribedTorque::load_derivatives(const State& x, LoadDerivatives& out) const
 {
     out.setZero();
-    if (frame == Frame::global) out.block<3, 3>(3, 3) = lie::tilde(x.body[body].A.transpose() * value(x.t));
+    if (frame == Frame::global)
+        out.block<3, 3>(3, 3) = lie::tilde(x.body[body].A.transpose() * value_at(components, x.t));
     return true;
 }
 

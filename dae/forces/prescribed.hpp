@@ -12,6 +12,12 @@ namespace hilda::dae {
 
 enum class Frame { global, body };
 
+/// The vector of three expressions in t
+inline Vec3 value_at(const std::array<io::Expression, 3>& components, double t)
+{
+    return {components[0].value(t), components[1].value(t), components[2].value(t)};
+}
+
 /// A force F(t) [N] at a point of a body, given by its components in the global or the body frame.
 ///
 /// The constructor throws lie::InvalidInput for the ground.
@@ -30,20 +36,13 @@ public:
 
     void add(const State& x, lie::Loads& out) const override
     {
-        const Vec3 F = value(x.t);
+        const Vec3 F = value_at(components, x.t);
         apply_force(body, frame == Frame::global ? F : Vec3(x.body[body].A * F), point_bar, x, out);
     }
 
     bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     std::array<int, 2> bodies() const override { return {body, ground}; }
     int last_body() const override { return body; }
-
-private:
-    /// The components at the time t
-    Vec3 value(double t) const
-    {
-        return {components[0].value(t), components[1].value(t), components[2].value(t)};
-    }
 };
 
 /// A torque n(t) [N m] on a body, given by its components in the global or the body frame.
@@ -63,20 +62,13 @@ public:
 
     void add(const State& x, lie::Loads& out) const override
     {
-        const Vec3 n = value(x.t);
+        const Vec3 n = value_at(components, x.t);
         out.n_bar[body] += frame == Frame::body ? n : Vec3(x.body[body].A.transpose() * n);
     }
 
     bool load_derivatives(const State& x, LoadDerivatives& out) const override;
     std::array<int, 2> bodies() const override { return {body, ground}; }
     int last_body() const override { return body; }
-
-private:
-    /// The components at the time t
-    Vec3 value(double t) const
-    {
-        return {components[0].value(t), components[1].value(t), components[2].value(t)};
-    }
 };
 
 }  // namespace hilda::dae

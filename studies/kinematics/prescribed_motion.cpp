@@ -2,17 +2,13 @@
 #include "studies/kinematics/prescribed_motion.hpp"
 
 #include "io/error.hpp"
-#include "io/files.hpp"
-#include "io/formats/csv.hpp"
 #include "io/json.hpp"
 #include "io/json_source.hpp"
 #include "io/nearest.hpp"
-#include "io/option_values.hpp"
 #include "lie/so3.hpp"
+#include "studies/framework/csv_table.hpp"
 
 #include <algorithm>
-#include <map>
-#include <optional>
 #include <vector>
 
 namespace hilda::studies {
@@ -20,31 +16,6 @@ namespace hilda::studies {
 namespace {
 
 constexpr const char* time_column = "t";
-
-struct Columns {
-    std::vector<std::string> names;
-    std::map<std::string, std::vector<double>> values;
-};
-
-Columns read_columns(const std::string& file)
-{
-    constexpr std::size_t most = std::size_t{1} << 30;
-    Columns all;
-    io::read_csv(io::read_file(file, most), file, [&](const io::CsvRow& row) {
-        if (all.names.empty()) all.names.assign(row.names.begin(), row.names.end());
-        for (std::size_t k = 0; k < row.cells.size(); ++k) {
-            const std::optional<double> value = io::number_in<double>(row.cells[k]);
-            if (!value)
-                throw io::InvalidInput(row.place + ": " + all.names[k] + " must be a number, got '" +
-                                       std::string(row.cells[k]) + "'");
-            all.values[all.names[k]].push_back(*value);
-        }
-    });
-    if (!all.values.contains(time_column)) throw io::InvalidInput(file + ": there must be a column t [s]");
-    if (all.names.size() < 2)
-        throw io::InvalidInput(file + ": there must be a column for a joint or a driver, besides t");
-    return all;
-}
 
 io::Json samples(const std::vector<double>& t, const std::vector<double>& f, double offset = 0)
 {
@@ -109,13 +80,15 @@ io::Json drive_of(const dae::Description& d, const io::Json& joint, const std::v
 
 dae::Description with_motion(const dae::Description& d, const std::string& file)
 {
-    const Columns columns = read_columns(file);
-    const std::vector<double>& t = columns.values.at(time_column);
+    const CsvTable table = read_csv_table(file);
+    const std::vector<double> t = table.values(time_column);
+    if (table.columns.size() < 2)
+        throw io::InvalidInput(file + ": there must be a column for a joint or a driver, besides t");
     io::Json root = io::JsonSource(d.text, d.name).root;
     std::vector<std::string> known;
     auto& constraints = std::get<io::Json::List>(root["constraints"].value);
     for (const io::Json& c : constraints) known.push_back(text_of(c, "name"));
-    for (const std::string& name : columns.names) {
+    for (const std::string& name : table.columns) {
         if (name == time_column) continue;
         const auto at = std::find(known.begin(), known.end(), name);
         if (at == known.end())
@@ -123,7 +96,7 @@ dae::Description with_motion(const dae::Description& d, const std::string& file)
                                    io::with_nearest(name, known));
         io::Json& constraint = constraints[static_cast<std::size_t>(at - known.begin())];
         const std::string type = text_of(constraint, "type");
-        const std::vector<double>& f = columns.values.at(name);
+        const std::vector<double> f = table.values(name);
         const bool is_driver = constraint.member("f") != nullptr || constraint.member("angle") != nullptr;
         if (is_driver)
             constraint[constraint.member("f") != nullptr ? "f" : "angle"] = samples(t, f);

@@ -328,8 +328,8 @@ void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
     }
     recorder.open(from);
     if (events) {
-        const auto saved = from ? from->sinks.find("events") : decltype(from->sinks.find("")){};
-        events->open(from && saved != from->sinks.end() ? saved->second : "", from_file);
+        const bool continues = from && from->sinks.contains("events");
+        events->open(continues ? from->sinks.at("events") : "", from_file);
     }
     if (options.coupling != nullptr)
         options.coupling->begin(march, [this](const std::string& what) { add_warning(what); });

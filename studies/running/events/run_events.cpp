@@ -30,26 +30,28 @@ std::vector<const dae::Output*> outputs_and_events(const dae::Description& d)
 
 RunEvents::RunEvents(const dae::Description& description, lie::EventSearch::Make make, RunTables& tables)
     : description(description), formulas(*description.model, outputs_and_events(description)),
-      values(formulas.columns.size()),
-      search(
-          [&] {
-              std::vector<lie::Event> events;
-              for (size_t k = 0; k < description.events.size(); ++k) {
-                  const dae::Event& event = description.events[k];
-                  const size_t column = formulas.columns.size() - description.events.size() + k;
-                  const auto value = [this, column](const lie::State& x) {
-                      formulas.values(x, values.data());
-                      return values[column];
-                  };
-                  events.push_back({event.value->name, value, event.direction, event.stops});
-              }
-              return events;
-          }(),
-          std::move(make)),
+      values(formulas.columns.size()), search(functions(), std::move(make)),
       bodies(body_columns(*description.model)), table(table_of(*bodies, tables)),
       row(3 + bodies->columns.size())
 {
     for (const dae::Event& event : description.events) counted.push_back({.name = event.value->name});
+}
+
+/// The functions of the events, in the last columns of `formulas`
+std::vector<lie::Event> RunEvents::functions()
+{
+    std::vector<lie::Event> all;
+    size_t column = formulas.columns.size() - description.events.size();
+    for (const dae::Event& event : description.events)
+        all.push_back({.name = event.value->name,
+                       .value =
+                           [this, column = column++](const lie::State& x) {
+                               formulas.values(x, values.data());
+                               return values[column];
+                           },
+                       .direction = event.direction,
+                       .stops = event.stops});
+    return all;
 }
 
 void RunEvents::open(const std::string& saved, const std::string& file)

@@ -48,6 +48,7 @@ public:
     std::string fault() const;
 
 private:
+    std::vector<lie::Event> functions();
     void transfer(io::Archive& a);
     void add_row(const lie::EventFound& found);
 

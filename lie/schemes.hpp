@@ -40,6 +40,7 @@ struct Scheme {
     bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
     bool regularised = false;   ///< supports regularised rows: implicit friction
     bool redundant = false;     ///< supports redundant rows, see System::keeps_redundant_rows()
+    bool histories = true;      ///< takes loads with a history: System::internal_states_are_history()
     bool implicit_springs =
         false;  ///< evaluates System::spring_pattern() implicitly, see lie::ImplicitSprings
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of

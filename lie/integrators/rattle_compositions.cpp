@@ -27,11 +27,9 @@ class Composition : public RattleStep {
 public:
     int step(State& x, double h) override
     {
-        if (!x.internal_state.empty() && model.internal_states_are_history())
-            throw InvalidInput(
-                "integrator " + name +
-                ": some of its internal steps are negative, which loads with a history (friction, "
-                "plasticity) do not have; rA-rattle takes such models");
+        refuse_history(x, name,
+                       "some of its internal steps are negative, which loads with a history (friction, "
+                       "plasticity) do not have; rA-rattle takes such models");
         start = x;
         Attempt attempt(x, start);
         int iterations = 0;
@@ -111,7 +109,8 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
             .source = source,
-            .redundant = true};
+            .redundant = true,
+            .histories = false};
 }
 
 const bool registered = register_scheme<Rattle4>(composition("rA-rattle-4", 4, "Suzuki (1990)")) &&

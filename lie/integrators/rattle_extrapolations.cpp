@@ -34,10 +34,9 @@ public:
 
     int step(State& x, double h) override
     {
-        if (!x.internal_state.empty() && model.internal_states_are_history())
-            throw InvalidInput("integrator " + name +
-                               ": loads with a history (friction, plasticity) are constant during a step and "
-                               "limit its order to 1; rA-rattle takes such models");
+        refuse_history(x, name,
+                       "loads with a history (friction, plasticity) are constant during a step and limit its "
+                       "order to 1; rA-rattle takes such models");
         start = x;
         Attempt attempt(x, start);
         int iterations = 0;
@@ -108,6 +107,7 @@ Scheme extrapolation(int order)
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
             .source = "Bulirsch, Stoer (1966)",
+            .histories = false,
             .energy_drifts = true};
 }
 

@@ -40,11 +40,10 @@ void AdaptiveStep<Method>::set_tolerance_limits()
 template <class Method>
 int AdaptiveStep<Method>::step(State& x, double h)
 {
-    if (x.internal_state.size() > 0 && model.internal_states_are_history())
-        reject("integrator " + scheme_name(),
-               "adaptive steps do not support loads that depend on a history, such as friction; use a fixed "
-               "step; number of internal states",
-               x.internal_state.size());
+    this->refuse_history(
+        x, scheme_name(),
+        "adaptive steps do not support loads that depend on a history, such as friction; use "
+        "a fixed step");
     copy(x, end), copy(x, x_n), copy(x, node);
     const auto numbers = [this](const auto& block) { transfer(block); };
     if (x.history.size() == 0)

@@ -54,6 +54,16 @@ Vec3 NewtonStep::tau_bar(int i, const Motion& body) const
     return loads.tau_bar(i, mass.J_bar[i], body.omega_bar);
 }
 
+bool NewtonStep::has_history(const State& x) const
+{
+    return !x.internal_state.empty() && model.internal_states_are_history();
+}
+
+void NewtonStep::refuse_history(const State& x, std::string_view scheme, std::string_view why) const
+{
+    if (has_history(x)) throw InvalidInput("integrator " + std::string(scheme) + ": " + std::string(why));
+}
+
 void NewtonStep::predict(double by_v, double by_vdot, double by_lambda)
 {
     for (int i = 0; i < bodies; ++i) {

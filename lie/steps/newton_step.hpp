@@ -8,6 +8,7 @@
 #include "lie/system.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hilda::lie {
@@ -39,6 +40,11 @@ protected:
     /// τ̄ = n̄ - ω̄ × J̄ ω̄ of body i, with n̄ from `loads`                                               Eq.
     /// 2.13c
     Vec3 tau_bar(int i, const Motion& body) const;
+
+    /// Whether loads depend on a history through the internal states of x: friction, plasticity
+    bool has_history(const State& x) const;
+    /// For schemes without Scheme::histories: throws InvalidInput "integrator SCHEME: WHY" if they do.
+    void refuse_history(const State& x, std::string_view scheme, std::string_view why) const;
 
     // For schemes with the unknowns z = (motion of the bodies, multipliers, algebraic variables), scaled:
 

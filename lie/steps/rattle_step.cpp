@@ -97,7 +97,6 @@ void RattleStep::set_velocities(State& x, double h)
     lie::set_velocities(x, v);
     model.loads(x, loads);
     assemble_once(x);
-    const bool has_history = !x.internal_state.empty() && model.internal_states_are_history();
     of_loads.start();
     constexpr int most = 50;
     double change = 0;
@@ -107,7 +106,7 @@ void RattleStep::set_velocities(State& x, double h)
             e.segment<3>(6 * i + 3) = -momentum(i, -z.segment<3>(6 * i + 3)) / h + 0.5 * h * loads.n_bar[i];
         }
         solve_velocities(model, K, x, e);
-        if (!varies || has_history) return;
+        if (!varies || has_history(x)) return;
         for (int i = 0; i < bodies; ++i)
             dv.segment<6>(6 * i) << x.body[i].rdot - v.segment<3>(6 * i),
                 x.body[i].omega_bar - v.segment<3>(6 * i + 3);

@@ -27,12 +27,15 @@ namespace hilda::studies {
 
 namespace {
 
+const char* name_of(const KinematicsOptions& options) { return options.inverse ? "inverse" : "kinematics"; }
+
 /// What the analysis has reached
 struct Reached {
-    struct Load {
+    struct Drive {
+        std::string name;
         double load = 0, power = 0;  ///< largest magnitudes
     };
-    std::vector<Load> drives;
+    std::vector<Drive> drives;
     long rows = 0;
     double t = 0, constraint_norm = 0;  ///< [s], [m or rad]
     dae::Reaction largest;              ///< with the largest force and the largest torque on a body
@@ -50,22 +53,22 @@ public:
         table = tables.table("drives", all);
     }
 
-    void node(const lie::State& x, bool is_row, std::vector<Reached::Load>& largest)
+    void node(const lie::State& x, bool is_row, std::vector<Reached::Drive>& largest)
     {
         row[0] = x.t;
         columns.values(x, row.data() + 1);
-        for (size_t k = 0; k < names().size(); ++k) {
+        for (size_t k = 0; k < largest.size(); ++k) {
             largest[k].load = std::max(largest[k].load, std::abs(row[5 * k + 4]));
             largest[k].power = std::max(largest[k].power, std::abs(row[5 * k + 5]));
         }
         if (is_row) table->row(row);
     }
-    /// Of the drivers
-    std::vector<std::string> names() const
+    /// The drivers, with loads of zero
+    std::vector<Reached::Drive> drivers() const
     {
-        std::vector<std::string> all;
+        std::vector<Reached::Drive> all;
         for (size_t k = 0; k < columns.columns.size(); k += 5)
-            all.push_back(columns.columns[k].name.substr(0, columns.columns[k].name.rfind('.')));
+            all.push_back({.name = columns.columns[k].name.substr(0, columns.columns[k].name.rfind('.'))});
         return all;
     }
 
@@ -103,11 +106,56 @@ void analyse(const dae::Model& model, lie::State x, const lie::TimeGrid& grid, i
     }
 }
 
+/// The contents of summary.json
+io::Json summary_of(const KinematicsOptions& options, const dae::Description& d,
+                    const dae::StartReport& start, double end, double interval, const Reached& reached,
+                    const std::vector<std::string>& files)
+{
+    io::Json summary = {{"status", reached.status},
+                        {"exit_code", reached.exit_code},
+                        {"message", reached.message},
+                        {"model", d.name},
+                        {"analysis", name_of(options)},
+                        {"dropped_rows", start.dropped},
+                        {"end", end},
+                        {"interval", interval},
+                        {"rows", reached.rows},
+                        {"t", reached.t},
+                        {"constraint_norm", reached.constraint_norm},
+                        {"largest_force", reached.largest.F.norm()},
+                        {"largest_torque", reached.largest.T.norm()},
+                        {"files", files},
+                        {"provenance", provenance(options.command_line, 1)}};
+    for (const Reached::Drive& drive : reached.drives)
+        summary["drives"].push_back(
+            {{"name", drive.name}, {"largest_load", drive.load}, {"largest_power", drive.power}});
+    return summary;
+}
+
+void print(const dae::Description& d, const dae::StartReport& start, const Reached& reached,
+           const std::string& directory, const std::vector<std::string>& files)
+{
+    const auto line = [](const char* what, const std::string& text) {
+        std::cout << fmt::format("{:<14}{}\n", what, text);
+    };
+    line("model", fmt::format("{}: {}, {}, 0 degrees of freedom", d.name,
+                              io::counted(d.model->bodies(), "body", "bodies"),
+                              io::counted(start.rows, "constraint row")));
+    line("reached", fmt::format("t = {:.6g} s, {}", reached.t, io::counted(reached.rows, "row")));
+    line("residual", fmt::format("{:.1e} m or rad", reached.constraint_norm));
+    line("largest load",
+         fmt::format("{:.4g} N, {:.4g} N m on a body", reached.largest.F.norm(), reached.largest.T.norm()));
+    for (const Reached::Drive& drive : reached.drives)
+        line(&drive == reached.drives.data() ? "drivers" : "",
+             fmt::format("{}: load up to {:.4g}, power up to {:.4g} W", drive.name, drive.load, drive.power));
+    line("written", fmt::format("{}: {}", directory, fmt::join(files, ", ")));
+}
+
 }  // namespace
 
 int run_kinematics(const KinematicsOptions& options)
 {
-    const std::string command = options.inverse ? "inverse" : "kinematics";
+    const std::string command = name_of(options);
     dae::Description d = named_model(options.model, options.set, "");
     if (!options.motion.empty()) d = with_motion(d, options.motion);
     // The velocities of the model do not belong to a motion of a file.
@@ -145,7 +193,7 @@ int run_kinematics(const KinematicsOptions& options)
     std::optional<DriveTable> drives;
     if (options.inverse) {
         drives.emplace(*d.model, *tables);
-        if (drives->names().empty())
+        if (drives->drivers().empty())
             throw lie::InvalidInput(d.name +
                                     ": inverse needs a driver, and the model has none; --motion FILE "
                                     "prescribes the motion of joints");
@@ -161,7 +209,7 @@ int run_kinematics(const KinematicsOptions& options)
                                            [&](const std::string& what) {
                                                if (!options.quiet) io::warning(what);
                                            },
-                                       .command = options.inverse ? "inverse" : "kinematics",
+                                       .command = name_of(options),
                                        .tables = tables});
     if (!options.quiet)
         for (const std::string& w : d.warnings) io::warning(w);
@@ -181,7 +229,7 @@ int run_kinematics(const KinematicsOptions& options)
     sinks.open();
     if (drives) {
         drives->table->open();
-        reached.drives.resize(drives->names().size());
+        reached.drives = drives->drivers();
     }
     try {
         analyse(*d.model, d.x, grid, sinks, drives ? &*drives : nullptr, reached);
@@ -207,48 +255,10 @@ int run_kinematics(const KinematicsOptions& options)
     }
     files.insert(files.begin(), "model.json");
     files.emplace_back("summary.json");
-    io::Json summary = {{"status", reached.status},
-                        {"exit_code", reached.exit_code},
-                        {"message", reached.message},
-                        {"model", d.name},
-                        {"analysis", command},
-                        {"dropped_rows", start.dropped},
-                        {"end", end},
-                        {"interval", interval},
-                        {"rows", reached.rows},
-                        {"t", reached.t},
-                        {"constraint_norm", reached.constraint_norm},
-                        {"largest_force", reached.largest.F.norm()},
-                        {"largest_torque", reached.largest.T.norm()},
-                        {"files", files},
-                        {"provenance", provenance(options.command_line, 1)}};
-    if (drives) {
-        summary["drives"] = io::Json::array();
-        for (size_t k = 0; k < reached.drives.size(); ++k)
-            summary["drives"].push_back({{"name", drives->names()[k]},
-                                         {"largest_load", reached.drives[k].load},
-                                         {"largest_power", reached.drives[k].power}});
-    }
+    const io::Json summary = summary_of(options, d, start, end, interval, reached, files);
     io::write_file(directory + "/summary.json", summary.text());
     if (options.json) std::cout << summary.text();
-    if (options.json || options.quiet) return reached.exit_code;
-    const auto line = [](const char* what, const std::string& text) {
-        std::cout << fmt::format("{:<14}{}\n", what, text);
-    };
-    line("model", fmt::format("{}: {}, {}, 0 degrees of freedom", d.name,
-                              io::counted(d.model->bodies(), "body", "bodies"),
-                              io::counted(start.rows, "constraint row")));
-    line("reached", fmt::format("t = {:.6g} s, {}", reached.t, io::counted(reached.rows, "row")));
-    line("residual", fmt::format("{:.1e} m or rad", reached.constraint_norm));
-    line("largest load",
-         fmt::format("{:.4g} N, {:.4g} N m on a body", reached.largest.F.norm(), reached.largest.T.norm()));
-    for (size_t k = 0; k < reached.drives.size(); ++k)
-        line(k == 0 ? "drivers" : "",
-             fmt::format("{}: load up to {:.4g}, power up to {:.4g} W", drives->names()[k],
-                         reached.drives[k].load, reached.drives[k].power));
-    std::string names;
-    for (const std::string& file : files) names += (names.empty() ? "" : ", ") + file;
-    line("written", directory + ": " + names);
+    if (!options.json && !options.quiet) print(d, start, reached, directory, files);
     return reached.exit_code;
 }
 

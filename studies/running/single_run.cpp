@@ -239,15 +239,18 @@ void SingleRun::check_step(bool resumed) const
         throw io::UsageError(fmt::format(
             "run: --end must be at most {} s, the last sample of the motion of '{}', got {}", motion.t,
             model.constraint_name(motion.constraint), static_cast<double>(grid.steps) * grid.h));
-    if (scheme.adaptive) {
-        for (const auto& force : model.forces())
-            if (force->internal_states() > 0)
-                throw io::UsageError(
-                    fmt::format("run: {} chooses its own steps; {} has internal state variables and "
-                                "needs a fixed-step scheme{}",
-                                scheme.name, force->label(), scheme.resumes ? " or --step" : ""));
-        return;
-    }
+    for (const auto& force : model.forces())
+        if (!scheme.histories && force->internal_states() > 0)
+            throw io::UsageError(
+                scheme.adaptive
+                    ? fmt::format(
+                          "run: {} chooses its own steps; {} has internal state variables and needs a "
+                          "fixed-step scheme{}",
+                          scheme.name, force->label(), scheme.resumes ? " or --step" : "")
+                    : fmt::format(
+                          "run: {} does not take loads with a history; {} has internal state variables",
+                          scheme.name, force->label()));
+    if (scheme.adaptive) return;
     const dae::Model::StableStep stable = model.stable_step(description.x, scheme);
     if (!(grid.h > stable.h)) return;
     const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];

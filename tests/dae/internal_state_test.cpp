@@ -101,13 +101,11 @@ TEST_CASE("forces with internal states reproduce the closed-form motion", "[dae]
         constexpr double h = 1e-3, t = 0.5;
         lie::March march(two.x, *integrator, h);
         INFO(scheme.name);
-        try {
-            for (int n = 0; n < 500; ++n) march.advance({});
-        } catch (const lie::InvalidInput& refusal) {
-            // Compositions cannot integrate bristles backwards, and extrapolations would lose their order.
-            REQUIRE_THAT(refusal.what(), Catch::Contains("loads with a history"));
+        if (!scheme.histories) {
+            REQUIRE_THROWS_WITH(march.advance({}), Catch::Contains("loads with a history"));
             continue;
         }
+        for (int n = 0; n < 500; ++n) march.advance({});
         CHECK(march.node().body[0].r.x() - 1 == Approx(std::sin(2 * t) / 2).margin(2e-3));
         const double omega = std::sqrt(10 / 2.0), t_1 = std::asin(0.1 * omega) / omega, s = t - t_1;
         const double slipped = 0.1 + std::cos(omega * t_1) * s - 0.25 * s * s;

@@ -97,7 +97,7 @@ hilda_install_headers(
         granular/core/attached.hpp granular/core/boundary.hpp granular/core/boundary_blocks.hpp
         granular/core/clump.hpp granular/core/contact_loop.hpp granular/core/contact_point.hpp granular/core/integrator.hpp
         granular/core/material.hpp granular/core/neighbours/cells.hpp granular/core/neighbours/neighbours.hpp
-        granular/core/orientation.hpp granular/core/pair_law.hpp granular/core/particles.hpp
+        granular/core/orientation.hpp granular/core/pair_law.hpp granular/core/particles.hpp granular/core/removal.hpp
         granular/core/surfaces/meridian.hpp granular/core/surfaces/mesh_view.hpp granular/core/surfaces/meshes.hpp
         granular/core/surfaces/surfaces.hpp granular/core/surfaces/triangle_mesh.hpp granular/core/watch.hpp
         granular/mesh/mesh_file.hpp granular/mesh/mesh_shapes.hpp

@@ -7,6 +7,7 @@
 #include "granular/core/clump.hpp"
 #include "granular/core/integrator.hpp"
 #include "granular/core/neighbours/neighbours.hpp"
+#include "granular/core/removal.hpp"
 #include "granular/core/watch.hpp"
 
 #include <memory>
@@ -85,6 +86,18 @@ public:
 
     /// See Neighbours::find. Throws LeftDomain for a clump whose centre of mass is outside the domain.
     virtual void find_neighbours(const Domain& domain) = 0;
+    /// The particles outside the domain, ordered by id
+    virtual std::vector<LeavingParticle> outside(const Domain& domain)
+    {
+        return particles_outside(arrays().particle, domain.grid);
+    }
+    /// See remove_particles.
+    virtual void remove(const std::vector<std::uint32_t>& ids)
+    {
+        Arrays<par::Cpu>& a = arrays();
+        remove_particles(a.particle, a.pairs, ids);
+        arrays_modified();
+    }
     /// See find_loads. Without `store`, the CPU computes only the loads of the pairs of SweepPlan::list here,
     /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other
     /// ones in advance(). `path`: upper bound of the path of any particle relative to any boundary since

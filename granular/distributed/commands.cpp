@@ -59,6 +59,11 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
                     "particles: the neighbour list of a process must not have more than 2^31 pairs");
             }
             return;
+        case Call::outside:
+            e.outside(c.domain);
+            return;
+        case Call::remove:
+            return e.remove(lists.next<std::uint32_t>());
         case Call::restore_list:
             return e.restore_list(c.domain);
         case Call::find_loads:
@@ -288,6 +293,20 @@ void FirstEngine::find_neighbours(const Domain& domain)
     // After a scatter there is no list yet from which the arrays could be collected.
     if (scatters) whole_is_current = true, ranks_are_current = false;
     throw LeftDomain{*lost};
+}
+
+std::vector<LeavingParticle> FirstEngine::outside(const Domain& domain)
+{
+    if (whole_is_current) return Engine::outside(domain);
+    return both({.call = Call::outside, .domain = domain}, {}, [&] { return own.outside(domain); });
+}
+
+void FirstEngine::remove(const std::vector<std::uint32_t>& ids)
+{
+    if (whole_is_current) return Engine::remove(ids);
+    Lists lists;
+    lists.add(ids);
+    both({.call = Call::remove}, lists, [&] { own.remove(ids); });
 }
 
 void FirstEngine::prepare(const Domain& domain)

@@ -24,6 +24,8 @@ enum class Call : std::int32_t {
     scatter,
     gather,
     find_neighbours,
+    outside,
+    remove,
     restore_list,
     find_loads,
     advance,
@@ -109,6 +111,8 @@ public:
     void move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses) override;
     void set_clumps(const Domain& domain, const ClumpTables& tables) override;
     void find_neighbours(const Domain& domain) override;
+    std::vector<LeavingParticle> outside(const Domain& domain) override;
+    void remove(const std::vector<std::uint32_t>& ids) override;
     void find_loads(const Domain& domain, float h, bool store, double path) override;
     float advance(const StepParameters& step) override;
     float largest_displacement() override;

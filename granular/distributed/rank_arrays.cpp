@@ -139,7 +139,7 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
     if (!begin.keeps_division) {
         partition.make(g, begin.shift, loaded);
         surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
-        busy = work = 0, steps = steps_since_division = 0, is_measured = false;
+        busy = 0, steps = steps_since_division = 0, is_measured = false;
     }
 
     const auto take = [&](const Portion& mine) {

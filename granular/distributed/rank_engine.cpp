@@ -86,12 +86,6 @@ struct RankEngine::Ghosts {
     std::vector<std::uint32_t> which;  ///< places in the list of the particles
 };
 
-/// Work of a particle with its row of pairs; the numbers are those of SweepPlan.
-double RankEngine::work_of(std::uint32_t k) const
-{
-    return 4 + static_cast<double>(own.pairs.start.data()[k + 1] - own.pairs.start.data()[k]);
-}
-
 /// Assigns the own particles to their cells. Throws LeftDomain in all processes if one is outside the domain.
 void RankEngine::assign_cells(const Domain& domain)
 {
@@ -114,26 +108,32 @@ void RankEngine::assign_cells(const Domain& domain)
 
 /// Divides the domain again if the work since the last time is not balanced.
 ///
-/// The weight of a block is the work of its particles and pairs, times the measured CPU time of its process
-/// per work.
+/// The measured CPU time of a process is distributed among its particles by their work and that of their
+/// pairs, or of their contacts after an outflow. The weight of a block is the sum over its particles.
 void RankEngine::divide_again(const Domain& domain)
 {
     // The first division has weights without a measurement. CPU times of short periods fluctuate.
     constexpr long first_steps = 200, later_steps = 1000;
     constexpr double most = 0.05;
-    if (steps < (is_measured ? later_steps : first_steps) || own.pairs.start.size() == 0) return;
+    if (steps < (is_measured ? later_steps : first_steps)) return;
     all.imbalance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
-    const double rate = work > 0 ? busy / work : 0;
-    busy = work = 0, steps = 0, is_measured = true;
+    const double time = std::exchange(busy, 0);
+    steps = 0, is_measured = true;
     if (all.imbalance.measured <= most) return;
 
     const CellGrid& g = domain.grid;
+    // The numbers are those of SweepPlan.
+    std::vector<float> work(own.particle.count, 4);
+    for (std::uint32_t n = 0; n < own.pairs.count; ++n) ++work[own.pairs.i.data()[n]];
+    double of_all = 0;
+    for (std::uint32_t k = 0; k < own.particle.count; ++k)
+        if (!is_ghost(k)) of_all += work[k];
     std::vector<BlockWork> blocks;
     for (std::uint32_t k = 0; k < own.particle.count; ++k) {
         if (is_ghost(k)) continue;
         const std::uint32_t cell = own.particle.position.data()[k].cell;
         blocks.push_back({partition.grid().block_of(g.x_of(cell), g.y_of(cell), g.z_of(cell)),
-                          static_cast<float>(rate * work_of(k))});
+                          static_cast<float>(time / of_all * work[k])});
     }
     // Particles have moved: a block can have some of two processes. It belongs to its owner.
     Addressed<BlockWork> to;
@@ -171,6 +171,31 @@ void RankEngine::find_neighbours(const Domain& domain)
     assign_cells(domain);
     divide_again(domain);
     rebuild(domain);
+}
+
+std::vector<LeavingParticle> RankEngine::outside(const Domain& domain)
+{
+    std::vector<LeavingParticle> found = particles_outside(own.particle, domain.grid), of_other;
+    if (!all.is_first()) {
+        all.send(0, found);
+        return {};
+    }
+    for (int from = 1; from < all.size(); ++from) {
+        all.receive(from, of_other);
+        found.insert(found.end(), of_other.begin(), of_other.end());
+    }
+    std::sort(found.begin(), found.end(),
+              [](const LeavingParticle& a, const LeavingParticle& b) { return a.id < b.id; });
+    return found;
+}
+
+void RankEngine::remove(const std::vector<std::uint32_t>& ids)
+{
+    remove_particles(own.particle, own.pairs, ids);
+    own.pairs.start.resize(0);
+    EngineOn::arrays_modified();
+    find_attached();
+    ghost_plan.reset();
 }
 
 void RankEngine::restore_list(const Domain& domain)
@@ -437,7 +462,6 @@ float RankEngine::advance(const StepParameters& step)
     }
     if (step.part != Part::only_loads) send_ghosts();
     if (step.part != Part::before_loads) {
-        work += own.pairs.count + 4. * own.particle.count;
         ++steps, ++steps_since_division;
     }
     extremes = all.reduced(extremes);

@@ -34,6 +34,10 @@ public:
 
     /// Also moves particles to the processes in whose part they are.
     void find_neighbours(const Domain& domain) override;
+    /// Of all processes, in the first one
+    std::vector<LeavingParticle> outside(const Domain& domain) override;
+    /// A neighbour search has to follow before the next step.
+    void remove(const std::vector<std::uint32_t>& ids) override;
     /// Builds the list for the positions of the last search.
     void restore_list(const Domain& domain);
 
@@ -68,7 +72,6 @@ private:
     void find_others_around(const CellGrid& grid, std::uint32_t cell, bool of_block,
                             std::vector<int>& others) const;
     void send_ghosts();
-    double work_of(std::uint32_t k) const;
 
     const Communicator& all;
     Partition partition;
@@ -87,7 +90,7 @@ private:
     par::Array<par::Cpu, std::uint32_t> keys, order;
 
     float largest_overlap = 0;      ///< of all processes since take_largest_overlap(), in the first one
-    double busy = 0, work = 0;      ///< CPU time of the steps since the last measurement [s], and their work
+    double busy = 0;                ///< CPU time of the steps since the last measurement [s]
     long steps = 0;                 ///< since the last measurement of the imbalance
     long steps_since_division = 0;  ///< of the domain
     bool is_measured = false;       ///< whether the imbalance has been measured

@@ -449,8 +449,8 @@ private:
     void find_neighbours() const;
     void rebuild_neighbours();
     void remove_outside();
-    RemovedParticle removed_at(std::uint32_t k, std::uint32_t side) const;
-    void keep_particles(const std::vector<std::uint32_t>& kept, std::size_t first_removed);
+    void record_removal(const LeavingParticle& p, std::uint32_t side);
+    void remove_recorded(std::size_t first);
     // clumps; see world_clumps.cpp
     std::uint32_t clump_of(std::uint32_t id) const
     {

@@ -293,8 +293,8 @@ void World::insert_clumps(const std::vector<Particle>& moved)
 /// Sets the clumps of the particles after the list of clumps has changed.
 void World::update_clump_tables()
 {
-    const par::Array<par::Cpu, ClumpBody>& all = engine->arrays().clump;
     if (templates.empty()) return;
+    const par::Array<par::Cpu, ClumpBody>& all = engine->arrays().clump;
     clump_tables.of.assign(next_id, no_clump);
     for (std::uint32_t k = 0; k < all.size(); ++k) {
         const ClumpBody& b = all.data()[k];

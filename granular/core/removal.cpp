@@ -36,8 +36,7 @@ std::vector<LeavingParticle> particles_outside(const Particles<par::Cpu>& p, con
     for (std::uint32_t k = 0; k < p.count; ++k)
         if ((p.ghost.size() == 0 || p.ghost.data()[k] == 0) && side_behind(g, p.position.data()[k]) >= 0)
             all.push_back(leaving_particle(p, k));
-    std::sort(all.begin(), all.end(),
-              [](const LeavingParticle& a, const LeavingParticle& b) { return a.id < b.id; });
+    std::sort(all.begin(), all.end());
     return all;
 }
 

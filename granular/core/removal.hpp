@@ -15,6 +15,8 @@ struct LeavingParticle {
     Position position;
     Float4 velocity, omega;
     std::uint32_t id = 0;
+
+    bool operator<(const LeavingParticle& o) const { return id < o.id; }
 };
 
 LeavingParticle leaving_particle(const Particles<par::Cpu>& p, std::uint32_t k);

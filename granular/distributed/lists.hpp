@@ -71,7 +71,7 @@ inline void replace(Particles<par::Cpu>& p, const std::vector<std::uint32_t>& ke
 {
     const auto one = [&](auto& array, auto member) {
         using T = std::remove_reference_t<decltype(*array.data())>;
-        for (std::size_t k = 0; k < kept.size(); ++k) array.data()[k] = array.data()[kept[k]];
+        keep(array, kept);
         std::vector<T> values;
         values.reserve(added.size());
         for (const ParticleRecord& r : added) values.push_back(r.*member);

@@ -184,8 +184,7 @@ std::vector<LeavingParticle> RankEngine::outside(const Domain& domain)
         all.receive(from, of_other);
         found.insert(found.end(), of_other.begin(), of_other.end());
     }
-    std::sort(found.begin(), found.end(),
-              [](const LeavingParticle& a, const LeavingParticle& b) { return a.id < b.id; });
+    std::sort(found.begin(), found.end());
     return found;
 }
 
@@ -461,9 +460,7 @@ float RankEngine::advance(const StepParameters& step)
         extremes.overlap.value = watched ? EngineOn::take_largest_overlap() : 0;
     }
     if (step.part != Part::only_loads) send_ghosts();
-    if (step.part != Part::before_loads) {
-        ++steps, ++steps_since_division;
-    }
+    if (step.part != Part::before_loads) ++steps, ++steps_since_division;
     extremes = all.reduced(extremes);
     largest_overlap = par::nan_max(largest_overlap, extremes.overlap.value);
     return extremes.speed.value;

@@ -40,10 +40,9 @@ void AdaptiveStep<Method>::set_tolerance_limits()
 template <class Method>
 int AdaptiveStep<Method>::step(State& x, double h)
 {
-    this->refuse_history(
-        x, scheme_name(),
-        "adaptive steps do not support loads that depend on a history, such as friction; use "
-        "a fixed step");
+    refuse_history(x, scheme_name(),
+                   "adaptive steps do not support loads that depend on a history, such as friction; use a "
+                   "fixed step");
     copy(x, end), copy(x, x_n), copy(x, node);
     const auto numbers = [this](const auto& block) { transfer(block); };
     if (x.history.size() == 0)

@@ -47,9 +47,9 @@ public:
     bool chooses_internal_steps() const override { return true; }
 
 private:
-    using Method::assemble_once, Method::bodies, Method::K, Method::model, Method::place, Method::scheme_name,
-        Method::set_accelerations, Method::set_slope, Method::settings, Method::theta, Method::unreached,
-        Method::x_n;
+    using Method::assemble_once, Method::bodies, Method::K, Method::model, Method::place,
+        Method::refuse_history, Method::scheme_name, Method::set_accelerations, Method::set_slope,
+        Method::settings, Method::theta, Method::unreached, Method::x_n;
 
     void set_tolerance_limits();
     void start(const State& x);

@@ -48,10 +48,12 @@ CsvTable read_csv_table(const std::string& file)
     io::read_csv(contents(file), file, [&](const io::CsvRow& row) {
         table.columns.assign(row.names.begin(), row.names.end());
         std::vector<double>& values = table.rows.emplace_back();
-        for (const std::string_view cell : row.cells) {
+        for (size_t k = 0; k < row.cells.size(); ++k) {
+            const std::string_view cell = row.cells[k];
             const auto value = cell.empty() ? std::optional(std::nan("")) : io::number_in<double>(cell);
             if (!value)
-                throw lie::InvalidInput(row.place + ": must be a number, got '" + std::string(cell) + "'");
+                throw lie::InvalidInput(row.place + ": " + table.columns[k] + " must be a number, got '" +
+                                        std::string(cell) + "'");
             values.push_back(*value);
         }
     });

@@ -8,7 +8,10 @@
 #include "lie/so3.hpp"
 #include "studies/framework/csv_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace hilda::studies {
@@ -76,12 +79,23 @@ io::Json drive_of(const dae::Description& d, const io::Json& joint, const std::v
     return drive;
 }
 
+/// A column of numbers. Throws io::InvalidInput for an empty field.
+std::vector<double> finite_values(const CsvTable& table, const std::string& column)
+{
+    std::vector<double> all = table.values(column);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (!std::isfinite(all[k]))
+            throw io::InvalidInput(fmt::format("{}: row {}: {} must be a finite number, got {}", table.file,
+                                               k + 1, column, all[k]));
+    return all;
+}
+
 }  // namespace
 
 dae::Description with_motion(const dae::Description& d, const std::string& file)
 {
     const CsvTable table = read_csv_table(file);
-    const std::vector<double> t = table.values(time_column);
+    const std::vector<double> t = finite_values(table, time_column);
     if (table.columns.size() < 2)
         throw io::InvalidInput(file + ": there must be a column for a joint or a driver, besides t");
     io::Json root = io::JsonSource(d.text, d.name).root;
@@ -96,7 +110,7 @@ dae::Description with_motion(const dae::Description& d, const std::string& file)
                                    io::with_nearest(name, known));
         io::Json& constraint = constraints[static_cast<std::size_t>(at - known.begin())];
         const std::string type = text_of(constraint, "type");
-        const std::vector<double> f = table.values(name);
+        const std::vector<double> f = finite_values(table, name);
         const bool is_driver = constraint.member("f") != nullptr || constraint.member("angle") != nullptr;
         if (is_driver)
             constraint[constraint.member("f") != nullptr ? "f" : "angle"] = samples(t, f);

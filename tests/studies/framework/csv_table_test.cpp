@@ -37,7 +37,7 @@ TEST_CASE("an invalid table is rejected with the number of the line", "[studies]
         CHECK_THROWS_WITH(studies::read_csv_table(in / "b.csv"), Contains(words));
     };
     refused("t,x\n0,1\n0\n", "b.csv:3: a row must have a field for each of the 2 columns, got 1");
-    refused("t,x\n# note\n0,one\n", "b.csv:3: must be a number, got 'one'");
+    refused("t,x\n# note\n0,one\n", "b.csv:3: x must be a number, got 'one'");
     refused("t,x\n0,1.5.2\n", "got '1.5.2'");
     refused("t,x\n", "b.csv: has no rows of numbers");
     refused("", "has no rows of numbers");

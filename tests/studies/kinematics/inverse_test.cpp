@@ -186,7 +186,9 @@ TEST_CASE("wrong motions are refused with their place", "[studies][kinematics]")
             "motion.csv: the model has no joint or driver 'pivut'; did you mean 'pivot'?");
     refused("x,pivot\n0,0\n", "motion.csv: there is no column 't'");
     refused("t\n0\n", "there must be a column for a joint or a driver");
-    refused("t,pivot\n0,0\n1,one\n", "motion.csv:3: must be a number, got 'one'");
+    refused("t,pivot\n0,0\n1,one\n", "motion.csv:3: pivot must be a number, got 'one'");
+    refused("t,pivot\n0,0\n1,\n", "motion.csv: row 2: pivot must be a finite number, got nan");
+    refused("t,pivot\n0,0\ninf,1\n", "motion.csv: row 2: t must be a finite number, got inf");
     refused("t,pivot\n0,0\n1,1\n", "a curve needs at least 6 samples; their number, got 2");
     refused("t,pivot\n0,0\n1,1\n2,1\n2,3\n4,4\n5,5\n", "sample 3: the times must be ascending");
     refused("t,pivot\n1,0\n2,1\n3,1\n4,3\n5,4\n6,5\n", "the samples must begin at t = 0 s or before, got 1");

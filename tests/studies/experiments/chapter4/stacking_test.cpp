@@ -152,7 +152,7 @@ TEST_CASE("the stacking study rejects invalid options before the first run", "[s
     };
     write(in / "bad.csv", "eta_r,m_c_gap_0.20R\n0.15,x\n");
     write(in / "less.csv", "eta_r,m_c_gap_0.20R\n0.15,1\n");
-    refused({"--against", "bad.csv"}, 3, "bad.csv:2: must be a number, got 'x'");
+    refused({"--against", "bad.csv"}, 3, "bad.csv:2: m_c_gap_0.20R must be a number, got 'x'");
     refused({"--against", "less.csv"}, 3, "less.csv: there is no column 'm_c_gap_0.25R'");
     refused({"--against", "none.csv"}, 3, "none.csv");
     refused({"--grid", "fine"}, 2, "--grid: must be dissertation or coarse, got 'fine'");

@@ -14,10 +14,14 @@
 namespace hilda::granular {
 
 /// Work of the busiest process over the mean, minus 1: as predicted when the domain was divided last, and as
-/// measured since the division before it
+/// measured in periods of at least 1000 steps
 struct Imbalance {
-    double predicted = 0, measured = 0;
-    long divisions = 0;  ///< of the domain during the run
+    double predicted = 0;  ///< by the last division of the domain
+    double busiest = 0;    ///< CPU time of the busiest process of each period, summed over the periods [s]
+    double mean = 0;       ///< of the mean over the processes [s]
+    long divisions = 0;    ///< of the domain during the run
+
+    double measured() const { return mean > 0 ? busiest / mean - 1 : 0; }
 };
 
 class Communicator {

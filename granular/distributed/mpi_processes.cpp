@@ -109,7 +109,7 @@ public:
         return io::formatted(
             "%d processes: work of the busiest over the mean, minus 1: %.2g measured, %.2g predicted for the "
             "last of %ld divisions of the domain",
-            all.size(), i.measured, i.predicted, i.divisions);
+            all.size(), i.measured(), i.predicted, i.divisions);
     }
     void abort(int code) override
     {

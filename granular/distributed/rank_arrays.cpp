@@ -139,7 +139,8 @@ void RankEngine::scatter(Arrays<par::Cpu>* whole, const Domain& domain, bool kee
     if (!begin.keeps_division) {
         partition.make(g, begin.shift, loaded);
         surrounded.assign(static_cast<std::size_t>(partition.grid().count()), -1);
-        busy = 0, steps = steps_since_division = 0, is_measured = false;
+        present = past = {}, reported = 0;
+        steps = periods = steps_reported = steps_since_division = 0;
     }
 
     const auto take = [&](const Portion& mine) {

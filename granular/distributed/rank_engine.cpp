@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace hilda::granular {
@@ -106,34 +107,47 @@ void RankEngine::assign_cells(const Domain& domain)
     if (outside.key > 0) throw LeftDomain{outside.id};
 }
 
-/// Divides the domain again if the work since the last time is not balanced.
-///
-/// The measured CPU time of a process is distributed among its particles by their work and that of their
-/// pairs, or of their contacts after an outflow. The weight of a block is the sum over its particles.
-void RankEngine::divide_again(const Domain& domain)
+/// Work of a step for each particle, as SweepPlan counts it: 4, and 1 for each of its pairs
+std::vector<float> RankEngine::work_of_particles() const
 {
-    // The first division has weights without a measurement. CPU times of short periods fluctuate.
-    constexpr long first_steps = 200, later_steps = 1000;
-    constexpr double most = 0.05;
-    if (steps < (is_measured ? later_steps : first_steps)) return;
-    all.imbalance.measured = all.reduced_for_all(Spread(busy)).imbalance(all.size());
-    const double time = std::exchange(busy, 0);
-    steps = 0, is_measured = true;
-    if (all.imbalance.measured <= most) return;
-
-    const CellGrid& g = domain.grid;
-    // The numbers are those of SweepPlan.
     std::vector<float> work(own.particle.count, 4);
     for (std::uint32_t n = 0; n < own.pairs.count; ++n) ++work[own.pairs.i.data()[n]];
-    double of_all = 0;
     for (std::uint32_t k = 0; k < own.particle.count; ++k)
-        if (!is_ghost(k)) of_all += work[k];
+        if (is_ghost(k)) work[k] = 0;
+    return work;
+}
+
+/// Divides the domain again if its work is not balanced.
+///
+/// The weight of a block is the work of its particles now times the CPU time of its process for a unit of
+/// work. This time is a mean in which each period of steps counts less than the next one: CPU times of short
+/// periods fluctuate, while work moves with the particles.
+void RankEngine::divide_again(const Domain& domain)
+{
+    // The processes decide by the same numbers: a process may be without particles, and without work.
+    constexpr long period = 200, report = 1000;  // [steps]
+    constexpr double memory = 0.9, most = 0.05;
+    if (steps < period) return;
+    if (++periods > 1) reported += present.time, steps_reported += steps;  // before, no time is known
+    past = {memory * past.time + present.time, memory * past.work + present.work};
+    present = {}, steps = 0;
+    if (steps_reported >= report) {
+        const Spread of_processes = all.reduced_for_all(Spread(reported));
+        all.imbalance.busiest += of_processes.largest, all.imbalance.mean += of_processes.sum / all.size();
+        reported = 0, steps_reported = 0;
+    }
+    const std::vector<float> work = work_of_particles();
+    const double time = past.work > 0 ? past.time / past.work : 0,
+                 of_step = time * std::accumulate(work.begin(), work.end(), 0.);
+    if (all.reduced_for_all(Spread(of_step)).imbalance(all.size()) <= most) return;
+
+    const CellGrid& g = domain.grid;
     std::vector<BlockWork> blocks;
     for (std::uint32_t k = 0; k < own.particle.count; ++k) {
         if (is_ghost(k)) continue;
         const std::uint32_t cell = own.particle.position.data()[k].cell;
         blocks.push_back({partition.grid().block_of(g.x_of(cell), g.y_of(cell), g.z_of(cell)),
-                          static_cast<float>(time / of_all * work[k])});
+                          static_cast<float>(time) * work[k]});
     }
     // Particles have moved: a block can have some of two processes. It belongs to its owner.
     Addressed<BlockWork> to;
@@ -171,6 +185,8 @@ void RankEngine::find_neighbours(const Domain& domain)
     assign_cells(domain);
     divide_again(domain);
     rebuild(domain);
+    const std::vector<float> work = work_of_particles();
+    work_of_step = std::accumulate(work.begin(), work.end(), 0.);
 }
 
 std::vector<LeavingParticle> RankEngine::outside(const Domain& domain)
@@ -399,7 +415,7 @@ void RankEngine::rebuild(const Domain& domain)
     replace(p, stay, added, used);
     for (std::uint32_t k = 0; k < p.count; ++k) p.ghost.data()[k] = k < first_ghost ? 0 : 1;
 
-    Busy measures(busy);
+    Busy measures(present.time);
     EngineOn::find_neighbours(domain);
     const std::uint32_t* const now = neighbours.new_indices();
     sent.clear(), received.clear();
@@ -447,7 +463,7 @@ void RankEngine::send_ghosts()
 
 void RankEngine::find_loads(const Domain& domain, float h, bool store, double path)
 {
-    Busy measures(busy);
+    Busy measures(present.time);
     EngineOn::find_loads(domain, h, store, path);
 }
 
@@ -455,12 +471,12 @@ float RankEngine::advance(const StepParameters& step)
 {
     StepExtremes extremes;
     {
-        Busy measures(busy);
+        Busy measures(present.time);
         extremes.speed.value = EngineOn::advance(step);
         extremes.overlap.value = watched ? EngineOn::take_largest_overlap() : 0;
     }
     if (step.part != Part::only_loads) send_ghosts();
-    if (step.part != Part::before_loads) ++steps, ++steps_since_division;
+    if (step.part != Part::before_loads) ++steps, ++steps_since_division, present.work += work_of_step;
     extremes = all.reduced(extremes);
     largest_overlap = par::nan_max(largest_overlap, extremes.overlap.value);
     return extremes.speed.value;

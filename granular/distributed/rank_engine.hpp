@@ -65,6 +65,7 @@ private:
     std::vector<BlockWork> loaded_blocks(const Particles<par::Cpu>& p, const CellGrid& g, const Cell& cell,
                                          std::int32_t& size) const;
     void assign_cells(const Domain& domain);
+    std::vector<float> work_of_particles() const;
     void divide_again(const Domain& domain);
     void rebuild(const Domain& domain);
     struct Ghosts;
@@ -89,11 +90,19 @@ private:
     std::vector<int> owner;
     par::Array<par::Cpu, std::uint32_t> keys, order;
 
-    float largest_overlap = 0;      ///< of all processes since take_largest_overlap(), in the first one
-    double busy = 0;                ///< CPU time of the steps since the last measurement [s]
-    long steps = 0;                 ///< since the last measurement of the imbalance
+    float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
+    struct Work {
+        double time = 0;  ///< CPU time [s]
+        double work = 0;  ///< as work_of_particles()
+    };
+    Work present;                   ///< of the steps since the last period
+    Work past;                      ///< weighted sums over the periods before
+    double work_of_step = 0;        ///< of the own particles
+    long steps = 0;                 ///< since the last period
+    long periods = 0;               ///< number of them
+    double reported = 0;            ///< CPU time since the last measurement of the imbalance [s]
+    long steps_reported = 0;        ///< since then
     long steps_since_division = 0;  ///< of the domain
-    bool is_measured = false;       ///< whether the imbalance has been measured
 };
 
 }  // namespace hilda::granular

@@ -12,9 +12,10 @@ namespace hilda::studies {
 
 namespace {
 
-dae::Description read(const Problem& problem, const StudyOptions& options)
+dae::Description read(const Problem& problem, const std::vector<std::string>& set,
+                      const StudyOptions& options)
 {
-    return dae::read_model(problem.model, problem.file.empty() ? problem.name : problem.file, options.set,
+    return dae::read_model(problem.model, problem.file.empty() ? problem.name : problem.file, set,
                            options.normal_rows, problem.folder);
 }
 
@@ -22,16 +23,16 @@ dae::Description read(const Problem& problem, const StudyOptions& options)
 
 double end_of_model(const dae::Description& d) { return d.end; }
 
-dae::Description read_and_start(const Problem& problem, const StudyOptions& options)
+dae::Description read_and_start(const Benchmark& benchmark, const StudyOptions& options)
 {
-    dae::Description d = read(problem, options);
+    dae::Description d = read(benchmark.problem, benchmark.set, options);
     dae::start(d, {.fix_initial = options.fix_initial});
     return d;
 }
 
 Benchmark make_benchmark(Problem problem, const StudyOptions& options, const DefaultEnd& end)
 {
-    dae::Description d = read(problem, options);
+    dae::Description d = read(problem, options.set, options);
     const dae::StartReport report = dae::start(d, {.fix_initial = options.fix_initial});
     if (!options.quiet) {
         for (const std::string& w : d.warnings) io::warning(w);
@@ -40,6 +41,7 @@ Benchmark make_benchmark(Problem problem, const StudyOptions& options, const Def
                         ": redundant with the constraints before it, dropped from the equations");
     }
     Benchmark c;
+    c.set = options.set;
     c.end = options.end ? *options.end : end(d);
     c.observable = problem.observable;
     if (c.observable.body.empty()) c.observable.body = d.model->all_bodies().back().name;

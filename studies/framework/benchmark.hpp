@@ -13,6 +13,7 @@ namespace hilda::studies {
 
 struct Benchmark {
     Problem problem;
+    std::vector<std::string> set;  ///< changes of the entries of the model, as those of --set
     std::shared_ptr<const dae::Description>
         started;            ///< model and consistent initial state, shared by the runs
     double end = 0;         ///< [s]
@@ -26,9 +27,8 @@ struct Benchmark {
     Errors uncertainty;  ///< estimated errors of the reference solution: see Reference::estimate_errors
 };
 
-/// Reads the model of a problem, with the changes of --set, and computes its consistent initial state.
-/// lie::InvalidInput.
-dae::Description read_and_start(const Problem& problem, const StudyOptions& options);
+/// Reads the model of a benchmark once more, and computes its consistent initial state. lie::InvalidInput.
+dae::Description read_and_start(const Benchmark& benchmark, const StudyOptions& options);
 
 /// End time of a model without --end [s]
 using DefaultEnd = std::function<double(const dae::Description&)>;

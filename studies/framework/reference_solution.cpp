@@ -97,7 +97,7 @@ void Reference::evaluate(Benchmark& c) const
 {
     const lie::Scheme* const reference = scheme_for(c);
     if (reference == nullptr) {
-        dae::Description d = read_and_start(c.problem, options);
+        dae::Description d = read_and_start(c, options);
         std::vector<double> times;
         for (long k = 0; k <= c.instants.count; ++k) times.push_back(static_cast<double>(k) * c.instants.dt);
         c.reference_solution = c.problem.reference_solution(d, times);
@@ -148,7 +148,7 @@ lie::Trajectory Reference::less_accurate(const Benchmark& c) const
     constexpr double larger_tolerance = 10, larger_step = 2;
     if (const lie::Scheme* const reference = scheme_for(c); reference != nullptr)
         return by_integrator(c, *reference, reference->adaptive ? larger_tolerance : larger_step);
-    const dae::Description d = read_and_start(c.problem, options);
+    const dae::Description d = read_and_start(c, options);
     if (6 * d.model->bodies() == d.model->rows()) {
         constexpr double substep = 2e-3;  // [s]
         dae::Kinematics kinematics(*d.model);

@@ -44,15 +44,15 @@ const std::string joints = R"(
     {"name": "revJoint_CD_1_2",  "type": "CD",  "body_i": "bar_1", "body_j": "bar_2", "c": [1, 0, 0], "s_bar_p_i": [2, 0, 0], "s_bar_q_j": [-1, 0, 0]},
     {"name": "revJoint_CD_2_2",  "type": "CD",  "body_i": "bar_1", "body_j": "bar_2", "c": [0, 1, 0], "s_bar_p_i": [2, 0, 0], "s_bar_q_j": [-1, 0, 0]},
     {"name": "revJoint_CD_3_2",  "type": "CD",  "body_i": "bar_1", "body_j": "bar_2", "c": [0, 0, 1], "s_bar_p_i": [2, 0, 0], "s_bar_q_j": [-1, 0, 0]}
-  ]
-}
-)";
+  ])";
 
-Problem double_pendulum(const std::string& name, const std::string& what, const std::string& head_and_bodies)
+Problem double_pendulum(const std::string& name, const std::string& what, const std::string& head_and_bodies,
+                        const std::string& forces = "")
 {
     return {.name = name,
             .what = what,
-            .model = "{\"hilda_model\": 1, \"name\": \"" + name + "\"," + head_and_bodies + joints,
+            .model = "{\"hilda_model\": 1, \"name\": \"" + name + "\"," + head_and_bodies + joints + forces +
+                     "\n}\n",
             .reference_name = "two-angle equations (rk8pd, 1e-13)",
             .reference_solution = two_angles,
             .observable = {}};
@@ -88,6 +88,34 @@ const bool moving = io::Registry<Problem>::add(
     {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]],
       "r_dot": [0, -2, 4], "omega": [0, 0, -2]}
   ],)"));
+
+/// The strut between the ground and the end of bar 2 leaves one slow motion, that of a four-bar linkage, and
+/// an oscillation of its length. At the start its preload, which does not depend on the stiffness, is the
+/// load of a rigid strut, so that the oscillation is small.
+Problem with_strut()
+{
+    Problem p = double_pendulum("double_pendulum_strut",
+                                "planar double pendulum whose end is held by a stiff spring-damper", R"(
+  "note": "double_pendulum with a strut from the ground to the end of bar 2",
+  "gravity": [0, 0, -9.81], "end": 3,
+  "bodies": [
+    {"name": "bar_1", "mass": 312, "inertia": [0.52, 416.26, 416.26], "r": [0, 2, 0],  "A": [[0, 0, 1], [1, 0, 0], [0, 1, 0]]},
+    {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
+  ],)",
+                                R"(,
+  "forces": [
+    {"name": "strut", "type": "spring-damper", "body_i": "ground", "s_bar_p_i": [0, 6, 0], "body_j": "bar_2", "s_bar_q_j": [1, 0, 0],
+     "stiffness": 1e8, "damping": 0, "free_length": 2.8284271247461903,
+     "force": 721.7567345870075, "implicit": true}
+  ])");
+    p.reference_name = "index-1 equations (GSL rk8pd, 1e-13)";
+    p.reference_solution = [](dae::Description& d, const std::vector<double>& t) {
+        return reference::reference_solution(*d.model, d.x, t);
+    };
+    return p;
+}
+
+const bool strut = io::Registry<Problem>::add(with_strut());
 
 }  // namespace
 

@@ -84,8 +84,8 @@ TEST_CASE("an option that a study does not use is rejected", "[studies][member]"
         check_refused(in, with({"study"}, more), 2, message);
     };
     refused({"energy", "--bars", "4"}, "study energy: --bars is for scaling");
-    refused({"energy", "--rtols", "1e-4"}, "--rtols is for work-precision");
-    refused({"convergence", "--repeats", "3"}, "--repeats is for scaling, timing, work-precision");
+    refused({"energy", "--rtols", "1e-4"}, "--rtols is for stiffness, work-precision");
+    refused({"convergence", "--repeats", "3"}, "--repeats is for scaling, stiffness, timing, work-precision");
     refused({"timing", "--reference", "rA-half-2"}, "--reference is for compare, convergence");
     refused({"energy", "--against", "a.csv"}, "study energy: --against is for ");
     refused({"energy", "--preset", "balanced"}, "study energy: --preset is for ");

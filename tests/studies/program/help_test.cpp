@@ -143,6 +143,7 @@ TEST_CASE("the files of a study are those that its help names", "[studies][help]
         {"timing", "--problem", "double_pendulum", "--end", "0.1", "--steps", "1e-2", "--repeats", "1"},
         {"long-time", "--problem", "heavy_top", "--end", "0.2", "--integrator", "rA-rattle"},
         {"tolerance", "--problem", "double_pendulum", "--end", "0.1", "--integrator", "rA-rattle"},
+        {"stiffness", "--end", "0.02", "--integrator", "rA-radau-5", "--repeats", "1"},
         {"friction", "--problem", "brick"},
         {"granular-oblique"},
         {"evolving-friction", "--end", "0.1"}};

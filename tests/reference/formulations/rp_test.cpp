@@ -159,8 +159,10 @@ TEST_CASE("schemes on Euler parameters and angles have their declared orders on 
         tests::Deviation d[2];
         double Q[2] = {};
         for (int k = 0; k < 2; ++k) {
-            const auto rows =
-                tests::run(s.name, model, x, k == 0 ? 2e-3 : 1e-3, 0.5, 0.1, {.tolerance = 1e-11});
+            // With the default spectral radius of 0.8 the error of the first steps of rp-hht is still visible
+            // in the accelerations of t = 0.1 s, after 50 steps.
+            const auto rows = tests::run(s.name, model, x, k == 0 ? 2e-3 : 1e-3, 0.5, 0.1,
+                                         {.tolerance = 1e-11, .rho_infinity = 0.6});
             d[k] = tests::deviation(rows, reference);
             std::vector<std::vector<dae::Reaction>> loads;
             for (const lie::State& row : rows) loads.push_back(dae::reactions(model, row));

@@ -58,8 +58,8 @@ double order(const Eigen::VectorXd& coarse, const Eigen::VectorXd& middle, const
 
 TEST_CASE("the schemes on Euler parameters and Euler angles are registered", "[reference][rp][reps]")
 {
-    for (const char* name :
-         {"rp-full-1", "rp-bdf2", "rp-half-1", "rp-half-1-kick", "reps-half-1", "reps-half-1-kick"})
+    for (const char* name : {"rp-full-1", "rp-bdf2", "rp-newmark", "rp-hht", "rp-half-1", "rp-half-1-kick",
+                             "reps-half-1", "reps-half-1-kick"})
         CHECK(lie::scheme(name).name == name);
 }
 
@@ -172,5 +172,49 @@ TEST_CASE("schemes on classical coordinates satisfy the constraints and keep A o
         CHECK(phi < 1e-12);
         CHECK(orthogonality < 1e-14);
         CHECK(p < 1e-14);
+    }
+}
+
+TEST_CASE("rp-newmark and rp-hht take the spectral radii with a numerical damping of the multipliers",
+          "[reference][rp]")
+{
+    const tests::SpinningTop top(false);
+    struct Range {
+        const char *name, *message;
+        double least;
+    };
+    for (const Range& r : {Range{"rp-newmark", "rho_infinity must be from 0 to less than 1, got", 0},
+                           Range{"rp-hht", "rho_infinity must be from 0.5 to less than 1, got", 0.5}}) {
+        CAPTURE(r.name);
+        for (const double rho : {r.least, 0.99})
+            CHECK_NOTHROW(lie::scheme(r.name).make(top, {.rho_infinity = rho}));
+        for (const double rho : {r.least - 0.1, 1., std::nan("")})
+            CHECK_THROWS_WITH(lie::scheme(r.name).make(top, {.rho_infinity = rho}),
+                              Catch::Matchers::Contains(r.message));
+    }
+}
+
+TEST_CASE("the damping of rp-newmark and rp-hht at infinite frequency is that of rho_infinity",
+          "[reference][rp]")
+{
+    // A spring of free length 0, which is linear, with ω h = 1000: the amplitude is ρⁿ times a polynomial of
+    // degree 2 in n at most.
+    const std::string name = GENERATE(std::string("rp-newmark"), std::string("rp-hht"));
+    for (const double rho : {0.6, 0.8, 0.9}) {
+        dae::Model model;
+        model.gravity.setZero();
+        lie::State x;
+        x.body.resize(1);
+        x.body[0].r = Vec3(1e-3, 0, 0);
+        model.add({.name = "ball", .m = 1, .J_bar = lie::Mat3::Identity()});
+        model.load(dae::SpringDamper(dae::ground, Vec3::Zero(), 0, Vec3::Zero(), 1e6, 0, 0));
+        dae::start(model, x);
+        const auto integrator = lie::scheme(name).make(model, {.tolerance = 1e-11, .rho_infinity = rho});
+        const auto rows = lie::march(x, *integrator, lie::TimeGrid::over(60, 1, 1)).row;
+        const auto size = [&](std::size_t n) { return std::abs(rows[n].body[0].rddot.x()); };
+        CAPTURE(name, rho, size(0), size(30), size(60));
+        const double of_step = std::pow(size(60) / size(30), 1 / 30.);
+        CHECK(of_step >= 0.99 * rho);
+        CHECK(of_step <= 1.01 * std::pow(2., 2 / 30.) * rho);
     }
 }

@@ -22,6 +22,7 @@ public:
 
     double correction;  ///< norm of the last correction, in the units of Settings::tolerance
     int iterations;
+    double rate = 0;  ///< mean ratio of a correction to the one before; 0: not known
     /// Name of the constraint row with the largest |Φ| at the last iterate. Set by integrators only; empty if
     /// there are no rows.
     std::string largest = {};

@@ -141,7 +141,14 @@ bool NewtonStep::converged(int k, double motion, const Eigen::Ref<const Eigen::V
     const double before = correction;
     correction = std::sqrt(sum / std::max(1.0, bodies / 4.0));
     if (k == 1) first_correction = correction;
-    if (correction < std::max(settings.tolerance, 4 * ulp)) return true;
+    const double rate = k > 1 ? correction / before : 0;
+    const double most = std::max(settings.tolerance, 4 * ulp);
+    if (correction < most) {
+        // With a rate up to 1/2 the error that remains is not larger than the correction.
+        constexpr double fast = 0.5, stagnant = 0.95;
+        if (rate <= fast || rate > stagnant || correction * rate < most * (1 - rate) || k == most_iterations)
+            return true;
+    }
     if (model.keeps_redundant_rows() && k == most_iterations)
         return correction <= largest_growth * first_correction;
     return k > 2 && correction > 0.5 * before && correction < 1e3 * ulp;
@@ -191,6 +198,8 @@ void NewtonStep::no_convergence(const std::string& scheme, double correction, co
     what.precision(2);
     what << scheme << ": correction " << correction << " after " << most_iterations << " iterations";
     NoConvergence failure(what.str(), correction, most_iterations);
+    if (first_correction > 0 && most_iterations > 1)  // of converged()
+        failure.rate = std::pow(correction / first_correction, 1. / (most_iterations - 1));
     if (model.rows() > 0) {
         Eigen::VectorXd Phi(model.rows());
         model.phi(x, Phi);

@@ -118,12 +118,25 @@ std::string step_text(double h)
     return text;
 }
 
+namespace {
+
+/// Whether Newton's method converged slowly or diverged; empty if it is not known
+std::string kind_of_failure(const lie::NoConvergence& newton)
+{
+    if (!(newton.rate > 0)) return {};
+    return fmt::format(", on average {:.2g} times the one before: {}", newton.rate,
+                       newton.rate < 1 ? "slow convergence" : "divergence");
+}
+
+}  // namespace
+
 Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
                    long number, double h, const lie::Scheme& scheme)
 {
     std::string how = failure.what();
     if (const auto* newton = dynamic_cast<const lie::NoConvergence*>(&failure))
-        how = fmt::format("correction {:.1e} after {} iterations", newton->correction, newton->iterations);
+        how = fmt::format("correction {:.1e} after {} iterations{}", newton->correction, newton->iterations,
+                          kind_of_failure(*newton));
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(h))) + 1, 1, 15);
     Diagnosis d;
     const bool at_node = dynamic_cast<const lie::NodeFailure*>(&failure) != nullptr;

@@ -183,7 +183,7 @@ TEST_CASE("an option of the integrators that none of them uses is refused with t
          "no selected integrator uses --max-iterations"},
         {{"run", "double_pendulum", "--max-iterations", "0"}, "--max-iterations"},
         {{"study", "energy", "--rtol", "1e-6"}, "--rtol is for compare"},
-        {{"study", "energy", "--atol", "1e-6"}, "--atol is for compare, sweep, work-precision"},
+        {{"study", "energy", "--atol", "1e-6"}, "--atol is for compare, stiffness, sweep, work-precision"},
         {{"study", "compare", "--rtol", "1e-6"}, "no selected integrator uses --rtol"},
         {{"study", "energy", "--integrator", "rA-half-1", "--rho-infinity", "0.5"}, "it is for rA-genalpha"},
         {{"study", "energy", "--seed", "0"}, "--seed is for scaling"},

@@ -15,7 +15,7 @@ from matplotlib.lines import Line2D
 
 import options
 import ticks
-from options import OF_THE_TEXT, chosen, directory, shown
+from options import OF_THE_TEXT, PREFERRED, chosen, directory, shown
 
 RESOLUTION = 200  # of raster formats [dpi]
 plt.rcParams.update({
@@ -157,9 +157,9 @@ def look(scheme, schemes):
     return {"color": colour, "marker": marker, "zorder": 3 - schemes.index(scheme) / len(schemes)}
 
 
-def by_scheme(rows, column="integrator"):
+def by_scheme(rows, column="integrator", preferred=PREFERRED):
     """For each scheme of a column that the figure shows: its name, its rows, and the arguments of plot functions"""
-    schemes = options.shown(distinct(rows, column)) if column == "integrator" else distinct(rows, column)
+    schemes = options.shown(distinct(rows, column), preferred) if column == "integrator" else distinct(rows, column)
     for scheme in schemes:
         yield scheme, where(rows, **{column: scheme}), look(scheme, schemes)
 

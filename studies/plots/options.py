@@ -81,9 +81,9 @@ def leave_out(names, hint=""):
     left_out_hint[0] = hint
 
 
-def shown(schemes):
+def shown(schemes, preferred=PREFERRED):
     """The integrators that a figure shows, in the order of its legend: those of --integrator, or at most MOST_CURVES of
-    the table. The caption of the figure names the others (see drawing.save)."""
+    the table, the preferred ones first. The caption of the figure names the others (see drawing.save)."""
     used.add("--integrator")
     names = arguments.given["--integrator"]
     check("--integrator", names, schemes)
@@ -92,7 +92,7 @@ def shown(schemes):
     if names:
         in_legend.extend(text_first(names))
         return list(in_legend)
-    first = [s for s in PREFERRED if s in schemes]
+    first = [s for s in preferred if s in schemes]
     some = (first + [s for s in schemes if s not in first])[:MOST_CURVES]
     leave_out([s for s in schemes if s not in some], " (hilda plot DIR --integrator NAME,... shows them)")
     in_legend.extend(text_first([s for s in schemes if s in some]))

@@ -6,6 +6,9 @@
 """
 from drawing import (Line2D, axis, by_scheme, chosen, distinct, for_each, legend, number, numbers, plt, save, shown)
 
+# The cheapest integrators of each order, the default one and IDA come before others.
+PREFERRED = ("rA-half-1-momentum", "rA-half-1-kick", "rA-rattle", "rA-rkmk-4", "rA-dp-5", "rA-dop853", "rA-rattle-6",
+             "ida-rp-baumgarte")
 PANELS = {"r": "position $r$, rms [m]", "v": "velocity $\\dot r$, rms [m/s]", "Q": "constraint loads, rms, relative"}
 ROUNDING = 1e-11  # the reference solutions are accurate to about 1e-12; no smaller error is meaningful
 
@@ -32,7 +35,7 @@ def draw(folder, problem, rows):
     figure, panels = plt.subplots(1, len(names), figsize=(max(6, 3.6 * len(names)), 4.6), sharex=True, squeeze=False)
     hollow = False
     for norm, axes in zip(names, panels[0]):
-        for _, mine, look in by_scheme(rows):
+        for _, mine, look in by_scheme(rows, preferred=PREFERRED):
             mine = [row for row in mine if row["status"] == "ok" and number(row[norm]) > 0]
             hollow = curve(axes, mine, norm, look) or hollow
         axis(axes, "thread CPU time of the run [ms]", title=PANELS[norm])
@@ -43,7 +46,7 @@ def draw(folder, problem, rows):
                     (f"\nno panel, at rounding: {', '.join(at_rounding)}" if at_rounding else ""), fontsize=11)
     more = [Line2D([], [], color="0.3", marker="o", mfc="white", ls="", label="at rounding")] if hollow else []
     save(figure, folder, f"work-precision-{problem}.png",
-         legend(figure, shown(distinct(rows, "integrator")), more=more, columns=5))
+         legend(figure, shown(distinct(rows, "integrator"), PREFERRED), more=more, columns=5))
 
 
 for_each("problem", draw)

@@ -120,12 +120,12 @@ std::string step_text(double h)
 
 namespace {
 
-/// Whether Newton's method converged slowly or diverged; empty if it is not known
+/// Whether Newton's method converged slowly or not at all; empty if it is not known
 std::string kind_of_failure(const lie::NoConvergence& newton)
 {
     if (!(newton.rate > 0)) return {};
     return fmt::format(", on average {:.2g} times the one before: {}", newton.rate,
-                       newton.rate < 1 ? "slow convergence" : "divergence");
+                       newton.rate < 0.9 ? "slow convergence" : "no convergence");
 }
 
 }  // namespace

@@ -223,7 +223,7 @@ TEST_CASE("a Newton iteration that does not converge is reported with its step a
     CHECK_THAT(ended.err,
                StartsWith("hilda: error[newton_diverged]: t=0.50 step 1 (rA-half-1, h=0.5): correction ") &&
                    Contains(" after 30 iterations, on average ") &&
-                   Contains(" times the one before: divergence\n  largest: constraint '") &&
+                   Contains(" times the one before: no convergence\n  largest: constraint '") &&
                    Contains("reciprocal condition"));
     CHECK(ordered_json::parse(ended.out)["status"] == "newton_diverged");
     CHECK(lines(in / "a/trajectory.csv").size() == 2);

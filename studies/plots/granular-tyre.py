@@ -16,6 +16,9 @@ def over_slip(axes, rows, column, factor, label):
         mine = [row for row in imposed if (number(row["mu_r"]) > 0) == rough]
         axes.plot(numbers(mine, "slip"), [factor * x for x in numbers(mine, column)], "os"[k] + ("-" if rough else "--"),
                   color=COLOURS[k], ms=5, lw=1.3, label="imposed slip" + ("" if rough else r", $\mu_r$ = 0"))
+        with_error = [row for row in mine if row.get(column + "_error", "")]
+        axes.errorbar(numbers(with_error, "slip"), [factor * x for x in numbers(with_error, column)],
+                      [factor * x for x in numbers(with_error, column + "_error")], ls="", color=COLOURS[k], lw=1, capsize=3)
     free = where(rows, imposed="0")
     axes.plot(numbers(free, "slip"), [factor * x for x in numbers(free, column)], "*", color=COLOURS[2], ms=11,
               label="free slip under torque")

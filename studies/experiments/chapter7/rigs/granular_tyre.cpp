@@ -17,6 +17,7 @@
 #include "studies/framework/study_context.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -48,17 +49,19 @@ struct TyreTest {
 struct Grid {
     std::string name;
     double length, width, duration;  ///< of the bed [m], of the motion [s]
+    long beds;                       ///< in which each test is run
     std::vector<TyreTest> tests;
 };
 
 const double none = std::nan("");
 
 const std::vector<Grid> grids = {
-    {"quick", 0.6, 0.14, 1.5, {{-0.3}, {0}, {0.3}, {0.6}, {0.3, 0}, {none}}},
+    {"quick", 0.6, 0.14, 1.5, 4, {{-0.3}, {0}, {0.3}, {0.6}, {0.3, 0}, {none}}},
     {"full",
      0.9,
      0.2,
      3,
+     4,
      {{-0.5}, {-0.3}, {-0.1}, {0}, {0.1}, {0.3}, {0.5}, {0.7}, {0, 0}, {0.3, 0}, {0.7, 0}, {none}}}};
 
 struct Result {
@@ -67,6 +70,8 @@ struct Result {
     double pull = 0, load = 0, torque = 0;         ///< [N], [N], [N m]
     double sinkage = 0;                            ///< [m]
     double power = 0, energy_error = 0, work = 0;  ///< [W], [J], [J] on the grains from the start
+    /// Standard errors of the means over the beds; NaN for one bed
+    double pull_error = none, torque_error = none;
     /// Rows t, pull, load, torque, sinkage: means over 0.05 s; rows x, z, speed of a grain and x, z of the
     /// axle at the end
     std::vector<double> motion = {}, grains = {};
@@ -78,6 +83,31 @@ void transfer(io::Archive& a, Result& r)
                       &r.energy_error, &r.work})
         a.value(*x);
     a.list(r.motion), a.list(r.grains);
+}
+
+/// Means of a test over its beds; the energy error of the largest magnitude; motion and grains of the first
+/// bed
+Result pooled(const std::vector<Result>& of_beds)
+{
+    const auto n = static_cast<double>(of_beds.size());
+    const auto mean = [&](double Result::*x) {
+        double sum = 0;
+        for (const Result& r : of_beds) sum += r.*x;
+        return sum / n;
+    };
+    const auto error = [&](double Result::*x) {
+        double squares = 0;
+        for (const Result& r : of_beds) squares += std::pow(r.*x - mean(x), 2);
+        return n > 1 ? std::sqrt(squares / (n * (n - 1))) : none;
+    };
+    Result all = of_beds.front();
+    for (double Result::*x : {&Result::slip, &Result::v, &Result::omega, &Result::pull, &Result::load,
+                              &Result::torque, &Result::sinkage, &Result::power, &Result::work})
+        all.*x = mean(x);
+    for (const Result& r : of_beds)
+        if (!(std::abs(r.energy_error) <= std::abs(all.energy_error))) all.energy_error = r.energy_error;
+    all.pull_error = error(&Result::pull), all.torque_error = error(&Result::torque);
+    return all;
 }
 
 /// Integral of a formula that rises linearly from 0 to 1 between `resting` and `resting + ramp`
@@ -215,8 +245,10 @@ const Columns<Result> columns{{{"slip", "slip", "{:.3f}", [](const Result& r) { 
                                {"v", "v [m/s]", "{:.4f}", &Result::v},
                                {"omega", "omega [rad/s]", "{:.3f}", &Result::omega},
                                {"pull", "pull [N]", "{:.3f}", &Result::pull},
+                               {"pull_error", "+- [N]", "{:.2f}", &Result::pull_error},
                                {"load", "load [N]", "{:.3f}", &Result::load},
                                {"torque", "torque [N m]", "{:.4f}", &Result::torque},
+                               {"torque_error", "+- [N m]", "{:.3f}", &Result::torque_error},
                                {"sinkage", "sinkage [m]", "{:.4f}", &Result::sinkage},
                                {"power", "power [W]", "{:.4f}", &Result::power},
                                {"work", "work [J]", "{:.4f}", &Result::work},
@@ -239,6 +271,26 @@ double value_at(double at, const std::vector<double>& slip, const std::vector<do
             return y[k - 1] + (at - slip[k - 1]) / (slip[k] - slip[k - 1]) * (y[k] - y[k - 1]);
     return std::nan("");
 }
+
+/// The parabola a x² + b x + c through points (x, y) by least squares, which averages their scatter
+struct Parabola {
+    Parabola(const std::vector<double>& x, const std::vector<double>& y)
+    {
+        Eigen::MatrixX3d powers(x.size(), 3);
+        for (Eigen::Index k = 0; k < powers.rows(); ++k) {
+            const double of = x[static_cast<std::size_t>(k)];
+            powers.row(k) << of * of, of, 1;
+        }
+        const Eigen::Map<const Eigen::VectorXd> values(y.data(), powers.rows());
+        const Eigen::Vector3d all = powers.colPivHouseholderQr().solve(values);
+        a = all[0], b = all[1], c = all[2];
+    }
+    double vertex() const { return -b / (2 * a); }
+    /// The zero at which it rises; NaN if there is none
+    double rising_zero() const { return 2 * c / (-b - std::sqrt(b * b - 4 * a * c)); }
+
+    double a = 0, b = 0, c = 0;
+};
 
 std::vector<Criterion> criteria(const std::vector<Result>& results)
 {
@@ -267,15 +319,15 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
         rough_sinkage += value_at(r.test.slip, slip, sinkage),
             rough_pull += value_at(r.test.slip, slip, pull);
     }
-    const auto least =
-        static_cast<std::size_t>(std::min_element(sinkage.begin(), sinkage.end()) - sinkage.begin());
+    const Parabola of_pull(slip, pull), of_sinkage(slip, sinkage);
     constexpr double infinite = std::numeric_limits<double>::infinity();
     return {
         between("smallest rise of the pull from one slip to the next [N]", least_rise, 0, infinite),
         between("slip at which the pull changes sign", zero(slip, pull), -0.1, 0.3),
         between("smallest rise of the torque from one slip to the next [N m]", least_torque_rise, 0,
                 infinite),
-        between("slip of the least sinkage", slip[least], -0.3, 0.3),
+        between("slip of the least sinkage, of the parabola by least squares", of_sinkage.vertex(), -0.3,
+                0.3),
         between("sinkage at the largest slip over that at 0", sinkage.back() / value_at(0, slip, sinkage), 1,
                 2),
         between("largest difference of the vertical force and the load, relative", load_error, 0, 0.02),
@@ -284,7 +336,8 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
         between("pull without rolling friction minus that with it [N]", smooth_pull - rough_pull, -infinite,
                 0),
         between("pull with free slip [N]", free.pull, -0.05 * load, 0.05 * load),
-        between("free slip minus the imposed slip without pull", free.slip - zero(slip, pull), -0.1, 0.1),
+        between("free slip minus the imposed slip without pull, of the parabola by least squares",
+                free.slip - of_pull.rising_zero(), -0.1, 0.1),
         between("largest energy error over the work on the grains", mismatch, 0, 0.02)};
 }
 
@@ -302,24 +355,40 @@ void run_study(StudyContext& s)
     constexpr long substeps = 4;
     Rigs rigs(s);
     const double end = resting + grid.duration, from = resting + 0.5 * grid.duration;
-    double top = 0;
-    s.job([&] { top = rigs.settle(soil); }, [&](io::Archive& a) { a.value(top); });
-    std::vector<Result> results;
-    for (const TyreTest& test : grid.tests) results.push_back({.test = test});
-    const auto job = [&](long k) {
-        Result& result = results[static_cast<std::size_t>(k)];
-        const TyreTest test = result.test;
+    std::vector<double> top(static_cast<std::size_t>(grid.beds));
+    const auto bed_number = [&](long number) {
         RigBed bed = soil;
+        bed.number = number + 1;
+        return bed;
+    };
+    const auto settle = [&] {
+        for (long k = 0; k < grid.beds; ++k) top[static_cast<std::size_t>(k)] = rigs.settle(bed_number(k));
+    };
+    s.job(settle, [&](io::Archive& a) { a.list(top); });
+    std::vector<std::vector<Result>> runs(grid.tests.size());
+    for (std::vector<Result>& of_beds : runs) of_beds.resize(top.size());
+    const auto run_of = [&](long k) -> Result& {
+        return runs[static_cast<std::size_t>(k / grid.beds)][static_cast<std::size_t>(k % grid.beds)];
+    };
+    const auto job = [&](long k) {
+        const TyreTest test = grid.tests[static_cast<std::size_t>(k / grid.beds)];
+        RigBed bed = bed_number(k % grid.beds);
         bed.mu_r = test.mu_r;
-        const double axle = top + radius + 1e-3;
+        const double highest = top[static_cast<std::size_t>(k % grid.beds)], axle = highest + radius + 1e-3;
+        const std::string of_bed = bed.number == 1 ? "" : fmt::format(" bed {}", bed.number);
         io::Json pair;
         pair["body"] = "tyre";
-        const RigRun run = rigs.run(test.name(), bed, model(test, bed, axle, end),
+        const RigRun run = rigs.run(test.name() + of_bed, bed, model(test, bed, axle, end),
                                     io::Json::List{tyre(bed, axle)}, pair, substeps, end);
-        result = measure(test, run, top, from);
+        run_of(k) = measure(test, run, highest, from);
     };
-    s.jobs(static_cast<long>(results.size()), job,
-           [&](io::Archive& a, long k) { transfer(a, results[static_cast<std::size_t>(k)]); });
+    s.jobs(static_cast<long>(runs.size()) * grid.beds, job,
+           [&](io::Archive& a, long k) { transfer(a, run_of(k)); });
+    std::vector<Result> results;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        for (Result& r : runs[k]) r.test = grid.tests[k];
+        results.push_back(pooled(runs[k]));
+    }
     Table motion({{"slip"}, {"imposed"}, {"mu_r"}, {"t"}, {"pull"}, {"load"}, {"torque"}, {"sinkage"}}),
         grains({{"slip"}, {"imposed"}, {"mu_r"}, {"x"}, {"z"}, {"speed"}, {"tyre_x"}, {"tyre_z"}});
     for (const Result& r : results) {

@@ -53,6 +53,13 @@ io::Json case_of(const RigBed& bed, double mu, double mu_r, const io::Json& fill
             {"fill", {fill}}};
 }
 
+/// Folder of a run or a bed
+std::string path_of(const std::string& parent, std::string name)
+{
+    std::replace(name.begin(), name.end(), ' ', '-');
+    return parent + '/' + name;
+}
+
 }  // namespace
 
 double RigRun::mean(const std::string& column, double after) const
@@ -85,15 +92,19 @@ Rigs::~Rigs()
 std::string Rigs::folder_of(const std::string& parent, const std::string& name) const
 {
     if (!study.options.quiet) io::message("hilda: study " + study.name + ": " + name + '\n');
-    std::string path = parent + '/' + name;
-    std::replace(path.begin() + static_cast<std::ptrdiff_t>(parent.size()), path.end(), ' ', '-');
+    std::string path = path_of(parent, name);
     fs::create_directories(path);
     return path;
 }
 
+std::string Rigs::name_of(const RigBed& bed)
+{
+    return bed.number == 1 ? "bed" : fmt::format("bed {}", bed.number);
+}
+
 double Rigs::settle(const RigBed& bed)
 {
-    const std::string path = folder_of(bed_folder, "bed");
+    const std::string path = folder_of(bed_folder, name_of(bed));
     io::Json all = case_of(bed, 0.1, bed.mu_r,
                            {{"type", "lattice"},
                             {"low", {0, 0, 0}},
@@ -101,7 +112,8 @@ double Rigs::settle(const RigBed& bed)
                             {"radius", bed.R},
                             {"spacing", 1.08},
                             {"jitter", 0.9},
-                            {"random_v", 0.3}});
+                            {"random_v", 0.3},
+                            {"seed", bed.number}});
     all["stages"] = {{{"name", "settle"},
                       {"duration", 3},
                       {"until", {{"share", 1e-3}, {"from", 0.1}}},
@@ -117,7 +129,8 @@ RigRun Rigs::run(const std::string& name, const RigBed& bed, const io::Json& mod
                  const io::Json& boundaries, const io::Json& pair, long substeps, double end) const
 {
     const std::string path = folder_of(folder, name), table = fs::absolute(path).string() + "/bed.csv";
-    fs::copy_file(bed_folder + "/bed/out/particles.csv", table, fs::copy_options::overwrite_existing);
+    fs::copy_file(path_of(bed_folder, name_of(bed)) + "/out/particles.csv", table,
+                  fs::copy_options::overwrite_existing);
     io::Json all = case_of(bed, bed.mu, bed.mu_r, {{"type", "csv"}, {"file", table}});
     for (const io::Json& b : *boundaries.list()) all["boundaries"].push_back(b);
     const double H = static_cast<double>(substeps) * bed.h;

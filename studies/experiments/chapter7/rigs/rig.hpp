@@ -26,6 +26,7 @@ struct RigBed {
     double h = 0;                             ///< step [s]
     bool periodic = false;                    ///< along y; otherwise walls
     double mu = 0.9, mu_r = 0.2;              ///< coefficients of sliding and of rolling friction
+    long number = 1;                          ///< of the bed: the seed of its fill
 };
 
 /// Impulses, motion and work of a body of a run, from tools.csv, and the grains at its end
@@ -51,7 +52,8 @@ public:
     Rigs& operator=(const Rigs&) = delete;
 
     /// Lets the grains of a bed settle with a coefficient of friction of 0.1, for a dense bed. Returns the
-    /// height of its highest point [m]. The runs below begin with it. Throws io::Failure.
+    /// height of its highest point [m]. The runs with this number of the bed begin with it. Throws
+    /// io::Failure.
     double settle(const RigBed& bed);
 
     /// Runs a model with `substeps` steps of the grains in each step of the mechanism. `pair`: body, boundary
@@ -62,6 +64,7 @@ public:
 private:
     /// Makes the folder of a run and reports its beginning.
     std::string folder_of(const std::string& parent, const std::string& name) const;
+    static std::string name_of(const RigBed& bed);
 
     const StudyContext& study;
     std::string folder, bed_folder, temporary;  ///< of the runs, of the bed; "": none

@@ -13,10 +13,7 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/message.hpp"
-#include "studies/framework/evaluated_run.hpp"
-#include "studies/framework/reference_solution.hpp"
-#include "studies/framework/stopwatch.hpp"
-#include "studies/framework/work_needed.hpp"
+#include "studies/experiments/chapter3/work_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -24,8 +21,8 @@ namespace hilda::studies {
 
 namespace {
 
-constexpr double accuracy[] = {1e-4, 1e-6,
-                               1e-9};  // rms errors of r for which the CPU time is interpolated [m]
+/// rms errors of r for which the CPU time is interpolated [m]
+constexpr double accuracy[] = {1e-4, 1e-6, 1e-9};
 
 struct Strut {
     double k, c;  // [N/m], [N s/m]
@@ -35,44 +32,15 @@ struct Strut {
 const std::vector<Strut> struts = {{1e3, 0}, {1e4, 0},  {1e5, 0},   {1e6, 0},   {1e7, 0},   {1e8, 0},
                                    {1e9, 0}, {1e10, 0}, {1e6, 1e2}, {1e6, 1e3}, {1e6, 1e4}, {1e6, 1e5}};
 
-struct StiffRun : TimedRun {
-    Strut strut{};
-    Errors errors;
-
-    void transfer(io::Archive& a)
-    {
-        Run::transfer(a);
-        a.value(errors.value), a.value(errors.instants);
-    }
-};
-
-using StiffSeries = std::vector<const StiffRun*>;
-
-void compute(StiffRun& run, const StudyOptions& options)
-{
-    Run& common = run;  // the part that the row and EvaluatedRun have in common
-    EvaluatedRun evaluated{common};
-    evaluate(evaluated, options.settings);
-    common = static_cast<const Run&>(evaluated);
-    run.errors = evaluated.errors;
-}
-
 Benchmark benchmark(const Strut& strut, const StudyOptions& options)
 {
     StudyOptions changed = options;
-    changed.set.insert(changed.set.begin(), {fmt::format("/forces/0/stiffness={:g}", strut.k),
-                                             fmt::format("/forces/0/damping={:g}", strut.c)});
+    // After the changes of --set, which may replace the whole force
+    changed.set.push_back(fmt::format("/forces/0/stiffness={:g}", strut.k));
+    changed.set.push_back(fmt::format("/forces/0/damping={:g}", strut.c));
     Benchmark c = make_benchmark(problem("double_pendulum_strut"), changed);
     c.problem.name = strut.name();
     return c;
-}
-
-WorkNeeded work_to(double error, const StiffSeries& series)
-{
-    std::vector<double> e, seconds;
-    for (const StiffRun* run : series)
-        e.push_back(run->errors.value[norm::r]), seconds.push_back(run->seconds_of_repeats().median);
-    return work_needed(e, seconds, error);
 }
 
 void stiffness(StudyContext& s)
@@ -82,66 +50,39 @@ void stiffness(StudyContext& s)
             if (change.starts_with(entry))
                 s.refuse("it sets the stiffness and the damping of the strut, got --set " +
                          io::in_quotes(change));
-    Schemes schemes = s.schemes({"rA-radau-5", "rA-genalpha", "rA-dp-5", "rA-rkmk-4", "rA-half-1-kick",
-                                 "rA-rattle", "ida-rp-baumgarte"});
-    for (const lie::Scheme*& scheme : schemes) scheme = &scheme->with_adaptive_steps();
-    const std::vector<double> steps = s.steps({2e-2, 1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
-    const std::vector<double> rtols =
-        s.options.rtols.empty()
-            ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12}
-            : s.options.rtols;
-    const Evaluated evaluated = finest(schemes, steps.back(), rtols.back());
+    const WorkGrid grid(s,
+                        {"rA-radau-5", "rA-genalpha", "rA-dp-5", "rA-rkmk-4", "rA-half-1-kick", "rA-rattle",
+                         "ida-rp-baumgarte"},
+                        {2e-2, 1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4},
+                        {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12});
+    const Reference reference(s, grid.finest());
     std::vector<Benchmark> all;
     for (const Strut& strut : struts) all.push_back(benchmark(strut, s.options));
-    Reference(s, evaluated).evaluate(all, evaluated.smallest_step > 0 ? steps : std::vector<double>());
+    const Sweep<WorkRun> runs = work_runs(s, grid, reference, all);
 
-    Sweep<StiffRun> runs;
-    for (std::size_t k = 0; k < all.size(); ++k)
-        for (const lie::Scheme* scheme : schemes)
-            for (const double resolution : scheme->adaptive ? rtols : steps)
-                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each
-                // node.
-                runs.add(all[k], *scheme,
-                         scheme->adaptive ? all[k].instants.dt * all[k].instants.stride : resolution,
-                         scheme->adaptive ? resolution : 0)
-                    .strut = struts[k];
-    runs.compute(
-        s, [&](StiffRun& run) { compute(run, s.options); }, ", errors");
-    time_in_turn(s, runs);
-
-    const auto error = [](int n) { return [n](const StiffRun& run) { return run.errors.value[n]; }; };
-    const Columns<StiffRun> columns = {
-        {"k", "k [N/m]", "{:g}", [](const StiffRun& run) { return run.strut.k; }},
-        {"c", "c [N s/m]", "{:g}", [](const StiffRun& run) { return run.strut.c; }},
-        column::integrator,
-        column::resolution,
-        column::h,
-        column::rtol,
-        column::reference,
-        {"", "CPU [ms]", "{:.3f}", [](const StiffRun& run) { return 1e3 * run.seconds_of_repeats().median; }},
-        {"r", "r [m]", error(norm::r)},
-        {"v", "v [m/s]", error(norm::v)},
-        {"Q", "Q", error(norm::Q)},
-        Column<StiffRun>(column::steps).as("steps", "{:.0f}"),
-        column::iterations,
-        column::factorizations,
-        column::cpu_seconds_of_repeats,
-        column::status};
-    const std::vector<StiffSeries> series = series_of(runs);
+    const auto strut_of = [&](const WorkRun& run) { return struts[static_cast<size_t>(run.c - all.data())]; };
+    const Columns<WorkRun> columns =
+        Columns<WorkRun>{{"k", "k [N/m]", "{:g}", [=](const WorkRun& run) { return strut_of(run).k; }},
+                         {"c", "c [N s/m]", "{:g}", [=](const WorkRun& run) { return strut_of(run).c; }},
+                         column::integrator,
+                         column::resolution,
+                         column::h,
+                         column::rtol,
+                         column::reference} +
+        columns_of_work();
+    const std::vector<WorkSeries> series = series_of(runs);
     Table times({{"k"}, {"c"}, {"integrator"}, {"accuracy"}, {"cpu_seconds_needed"}, {"at_most"}});
     for (const double asked : accuracy) {
         std::vector<Table::Column> head = {{"k [N/m]", "{:.0e}"}, {"c [N s/m]", "{:g}"}};
-        for (const lie::Scheme* scheme : schemes) head.push_back({scheme->name});
+        for (const lie::Scheme* scheme : grid.schemes) head.push_back({scheme->name});
         Table table(head);
         for (std::size_t k = 0; k < all.size(); ++k) {
             std::vector<Table::Cell> row = {struts[k].k, struts[k].c};
-            for (const StiffSeries& of : series) {
-                const StiffRun& first = *of.front();
+            for (const WorkSeries& of : series) {
+                const WorkRun& first = *of.front();
                 if (first.c != &all[k]) continue;
-                const WorkNeeded w = work_to(asked, of);
-                row.emplace_back(std::isnan(w.seconds)
-                                     ? "-"
-                                     : fmt::format("{}{:.1f}", w.at_most ? "<= " : "", 1e3 * w.seconds));
+                const WorkNeeded w = work_needed(of, asked);
+                row.emplace_back(milliseconds(w, 1));
                 times.add(
                     {struts[k].k, struts[k].c, first.scheme->name, asked, w.seconds, w.at_most ? 1L : 0L});
                 s.json["series"].push_back({{"k", struts[k].k},

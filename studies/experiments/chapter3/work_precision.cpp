@@ -8,10 +8,7 @@
 
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
-#include "studies/framework/evaluated_run.hpp"
-#include "studies/framework/reference_solution.hpp"
-#include "studies/framework/stopwatch.hpp"
-#include "studies/framework/work_needed.hpp"
+#include "studies/experiments/chapter3/work_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -21,25 +18,6 @@ namespace {
 
 constexpr double target_error = 1e-3;  // rms error of r for which the CPU time is interpolated [m]
 
-struct WorkRun : TimedRun {
-    Errors errors;
-
-    void transfer(io::Archive& a)
-    {
-        Run::transfer(a);
-        a.value(errors.value), a.value(errors.instants);
-    }
-};
-
-void compute(WorkRun& run, const StudyOptions& options)
-{
-    Run& common = run;  // the part that the row and EvaluatedRun have in common
-    EvaluatedRun evaluated{common};
-    evaluate(evaluated, options.settings);
-    common = static_cast<const Run&>(evaluated);
-    run.errors = evaluated.errors;
-}
-
 /// End time [s]. Chains of more than two bars are chaotic: after one or two seconds the errors of all but the
 /// smallest steps are as large as the motion, and the order is not visible. The end time of 1.2 s is a
 /// multiple of steps such as 4e-3 s, so that all instants of the reference solution are nodes.
@@ -48,16 +26,7 @@ double end_of(const dae::Description& d)
     return d.name.starts_with("n_pendulum") && d.model->bodies() > 2 ? std::min(d.end, 1.2) : d.end;
 }
 
-/// Runs of one scheme on one problem, by decreasing step or tolerance
-using WorkSeries = std::vector<const WorkRun*>;
-
-WorkNeeded work_to_target(const WorkSeries& series)
-{
-    std::vector<double> e, seconds;
-    for (const WorkRun* run : series)
-        e.push_back(run->errors.value[norm::r]), seconds.push_back(run->seconds_of_repeats().median);
-    return work_needed(e, seconds, target_error);
-}
+WorkNeeded work_to_target(const WorkSeries& series) { return work_needed(series, target_error); }
 
 void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, StudyText& out)
 {
@@ -72,10 +41,8 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, StudyTex
     for (const WorkSeries& series : all) {
         if (series.front()->c != &c) continue;
         const WorkNeeded w = work_to_target(series);
-        table.add(
-            {series.front()->scheme->name,
-             std::isnan(w.seconds) ? "-" : fmt::format("{}{:.3f}", w.at_most ? "<= " : "", 1e3 * w.seconds),
-             fastest != nullptr ? w.seconds / work_to_target(*fastest).seconds : std::nan("")});
+        table.add({series.front()->scheme->name, milliseconds(w, 3),
+                   fastest != nullptr ? w.seconds / work_to_target(*fastest).seconds : std::nan("")});
     }
     out << '\n';
     table.print(out);
@@ -87,51 +54,17 @@ void print_work(const std::vector<WorkSeries>& all, const Benchmark& c, StudyTex
 
 void work_precision(StudyContext& s)
 {
-    Schemes schemes = s.schemes();
-    for (const lie::Scheme*& scheme : schemes) scheme = &scheme->with_adaptive_steps();
-    const std::vector<double> steps = s.steps({1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4});
-    const std::vector<double> rtols =
-        s.options.rtols.empty() ? std::vector<double>{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}
-                                : s.options.rtols;
-    const Evaluated evaluated = finest(schemes, steps.back(), rtols.back());
-    const Reference reference(s, evaluated);
+    const WorkGrid grid(s, {}, {1e-2, 4e-3, 2e-3, 1e-3, 4e-4, 2e-4, 1e-4},
+                        {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10});
+    const Reference reference(s, grid.finest());
     std::vector<Benchmark> all =
         benchmarks(s.name, s.options, {"double_pendulum", "n_pendulum_8", "n_pendulum_64"}, end_of);
-    reference.evaluate(all, evaluated.smallest_step > 0 ? steps : std::vector<double>());
+    const Sweep<WorkRun> runs = work_runs(s, grid, reference, all);
 
-    Sweep<WorkRun> runs;
-    for (const Benchmark& c : all)
-        for (const lie::Scheme* scheme : schemes)
-            for (const double resolution : scheme->adaptive ? rtols : steps)
-                // Only the nodes that the rms norms need: an adaptive scheme may have to end a step at each
-                // node.
-                runs.add(c, *scheme, scheme->adaptive ? c.instants.dt * c.instants.stride : resolution,
-                         scheme->adaptive ? resolution : 0);
-    runs.compute(
-        s, [&](WorkRun& run) { compute(run, s.options); }, ", errors");
-    time_in_turn(s, runs);
-
-    const auto error = [](int n) { return [n](const WorkRun& run) { return run.errors.value[n]; }; };
-    Columns<WorkRun> norms{
-        {"", "CPU [ms]", "{:.3f}", [](const auto& run) { return 1e3 * run.seconds_of_repeats().median; }}};
-    for (int n = 0; n < norm::count; ++n)
-        norms = norms + Columns<WorkRun>{{norm::names[n],
-                                          n == norm::r   ? "r [m]"
-                                          : n == norm::v ? "v [m/s]"
-                                                         : norm::names[n],
-                                          error(n)}};
     const Columns<WorkRun> columns =
         Columns<WorkRun>{column::problem, column::integrator, column::resolution, column::h,
                          column::rtol,    column::end,        column::reference} +
-        norms +
-        Columns<WorkRun>{Column<WorkRun>(column::steps).as("steps", "{:.0f}"),
-                         column::iterations,
-                         column::factorizations,
-                         column::refactorizations,
-                         column::cpu_seconds_of_repeats,
-                         {"cpu_seconds_min", [](const auto& run) { return run.seconds_of_repeats().least; }},
-                         {"cpu_seconds_max", [](const auto& run) { return run.seconds_of_repeats().most; }},
-                         column::status};
+        columns_of_work();
     const std::vector<WorkSeries> series = series_of(runs);
     for (const Benchmark& c : all) {
         s.text << fmt::format("\n{}, end time {:g} s; reference solution: {}\n", c.problem.name, c.end,

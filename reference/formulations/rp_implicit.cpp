@@ -44,6 +44,13 @@ int RpImplicit::step(lie::State& x, double h)
     no_convergence(name, correction, x);
 }
 
+void RpImplicit::set_linear_acceleration(double h)
+{
+    formula.qdot = qdot_n + h / 2 * qddot_n;
+    formula.q = q_n + h * qdot_n + h * h / 3 * qddot_n;
+    formula.g_v = h / 2, formula.g_q = h * h / 6;
+}
+
 /// Sets q_n and q̇_n from x_n and its history, and q̈_n with p̈ from ω̄̇.
 void RpImplicit::restore(bool at_start)
 {

@@ -27,6 +27,11 @@ public:
 protected:
     /// Sets q*, q̇*, g_q and g_v from q_n, q̇_n, q̈_n and the scheme's data in x_n.history.
     virtual void set_formula(double h, bool at_start) = 0;
+    /// Sets the formula of an acceleration that is linear in time, for the first step of schemes of order 2:
+    /// q̇_1 = q̇_0 + (h/2)(q̈_0 + q̈_1), q_1 = q_0 + h q̇_0 + h² (q̈_0/3 + q̈_1/6).
+    void set_linear_acceleration(double h);
+    /// Whether the scheme's data begin with another step than h: the scheme then starts again.
+    bool step_differs(double h) const { return x_n.history[x_n.history.size() - more()] != h; }
     /// Size of the scheme's data in the history
     virtual int more() const { return 0; }
     /// Writes the scheme's data after an accepted step from q_n, q̇_n.

@@ -39,21 +39,11 @@ private:
 
     void set_formula(double h, bool at_start) override
     {
-        if (at_start || x_n.history[x_n.history.size() - more()] != h) {
-            set_starting_formula(h);
-            return;
-        }
+        if (at_start || step_differs(h)) return set_linear_acceleration(h);
         const auto before = x_n.history.tail(2 * half());
         formula.qdot = (4 * qdot_n - before.tail(half())) / 3;
         formula.q = (4 * q_n - before.head(half())) / 3 + 2 * h / 3 * formula.qdot;
         formula.g_v = 2 * h / 3, formula.g_q = formula.g_v * formula.g_v;
-    }
-
-    void set_starting_formula(double h)
-    {
-        formula.qdot = qdot_n + h / 2 * qddot_n;
-        formula.q = q_n + h * qdot_n + h * h / 3 * qddot_n;
-        formula.g_v = h / 2, formula.g_q = h * h / 6;
     }
 
     void save_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }

@@ -33,40 +33,48 @@ struct Parameters {
     double alpha, beta, gamma;
 };
 
-/// Common steps of the two schemes
+/// Settings::rho_infinity, from `least` to less than 1. Throws InvalidInput.
+double radius(const lie::Settings& settings, const char* scheme, double least, const char* range)
+{
+    const double rho = settings.rho_infinity;
+    if (!(rho >= least && rho < 1)) lie::reject(scheme, range, rho);
+    return rho;
+}
+
+Parameters of_newmark(const lie::Settings& settings)
+{
+    const double rho = radius(settings, "rp-newmark", 0, "rho_infinity must be from 0 to less than 1"),
+                 gamma = (3 - rho) / (2 + 2 * rho);
+    return {.alpha = 0, .beta = 0.25 * (gamma + 0.5) * (gamma + 0.5), .gamma = gamma};
+}
+
+Parameters of_hht(const lie::Settings& settings)
+{
+    const double rho = radius(settings, "rp-hht", 0.5, "rho_infinity must be from 0.5 to less than 1"),
+                 alpha = (1 - rho) / (1 + rho);
+    return {.alpha = alpha, .beta = 0.25 * (1 + alpha) * (1 + alpha), .gamma = 0.5 + alpha};
+}
+
+/// The steps of both schemes
 class RpNewmarkFamily : public RpImplicit {
 protected:
     RpNewmarkFamily(const lie::System& model, const lie::Settings& settings, const char* name,
-                    const Parameters& of, bool starts_linearly)
-        : RpImplicit(model, settings, name), of(of), starts_linearly(starts_linearly),
-          a_n(Eigen::VectorXd::Zero(q_n.size()))
+                    const Parameters& of)
+        : RpImplicit(model, settings, name), of(of), a_n(Eigen::VectorXd::Zero(q_n.size()))
     {}
 
-    static double radius(const lie::Settings& settings, const char* name, const char* range, double least)
-    {
-        const double rho = settings.rho_infinity;
-        if (!(rho >= least && rho < 1)) lie::reject(name, range, rho);
-        return rho;
-    }
-
 private:
-    int half() const { return static_cast<int>(q_n.size()); }
-    int more() const override { return 1 + half(); }  // h, a_n
+    int more() const override { return 1 + static_cast<int>(q_n.size()); }  // h, a_n
 
     void set_formula(double h, bool at_start) override
     {
-        const bool starts = at_start || x_n.history[x_n.history.size() - more()] != h;
-        if (starts && starts_linearly) {
-            formula.qdot = qdot_n + h / 2 * qddot_n;
-            formula.q = q_n + h * qdot_n + h * h / 3 * qddot_n;
-            formula.g_v = h / 2, formula.g_q = h * h / 6;
-            return;
-        }
+        const auto [alpha, beta, gamma] = of;
+        const bool starts = at_start || step_differs(h), is_second_order = alpha > 0;
+        if (starts && is_second_order) return set_linear_acceleration(h);
         if (starts)
             a_n = qddot_n;
         else
-            a_n = x_n.history.tail(half());
-        const auto [alpha, beta, gamma] = of;
+            a_n = x_n.history.tail(q_n.size());
         formula.qdot = qdot_n + h * (1 - gamma) * a_n + h * gamma * alpha * qddot_n;
         formula.q = q_n + h * qdot_n + h * h * (0.5 - beta) * a_n + h * h * beta * alpha * qddot_n;
         formula.g_v = h * gamma * (1 - alpha), formula.g_q = h * h * beta * (1 - alpha);
@@ -74,42 +82,25 @@ private:
 
     void save_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override
     {
-        out << h, (1 - of.alpha) * z.head(half()) + of.alpha * qddot_n;
+        out << h, (1 - of.alpha) * z.head(q_n.size()) + of.alpha * qddot_n;
     }
 
     const Parameters of;
-    const bool starts_linearly;
     Eigen::VectorXd a_n;
 };
 
 class RpNewmark final : public RpNewmarkFamily {
 public:
     RpNewmark(const lie::System& model, const lie::Settings& settings)
-        : RpNewmarkFamily(model, settings, "rp-newmark", parameters(settings), false)
+        : RpNewmarkFamily(model, settings, "rp-newmark", of_newmark(settings))
     {}
-
-private:
-    static Parameters parameters(const lie::Settings& settings)
-    {
-        const double rho = radius(settings, "rp-newmark", "rho_infinity must be from 0 to less than 1", 0);
-        const double gamma = (3 - rho) / (2 + 2 * rho);
-        return {.alpha = 0, .beta = 0.25 * (gamma + 0.5) * (gamma + 0.5), .gamma = gamma};
-    }
 };
 
 class RpHht final : public RpNewmarkFamily {
 public:
     RpHht(const lie::System& model, const lie::Settings& settings)
-        : RpNewmarkFamily(model, settings, "rp-hht", parameters(settings), true)
+        : RpNewmarkFamily(model, settings, "rp-hht", of_hht(settings))
     {}
-
-private:
-    static Parameters parameters(const lie::Settings& settings)
-    {
-        const double rho = radius(settings, "rp-hht", "rho_infinity must be from 0.5 to less than 1", 0.5);
-        const double alpha = (1 - rho) / (1 + rho);
-        return {.alpha = alpha, .beta = 0.25 * (1 + alpha) * (1 + alpha), .gamma = 0.5 + alpha};
-    }
 };
 
 const bool newmark = lie::register_scheme<RpNewmark>(

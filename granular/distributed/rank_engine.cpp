@@ -7,7 +7,6 @@
 #include <ctime>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace hilda::granular {
@@ -15,6 +14,9 @@ namespace hilda::granular {
 using namespace detail;
 
 namespace {
+
+/// Work of a particle in a step, and of each of its pairs: the numbers of SweepPlan
+constexpr float particle_work = 4, pair_work = 1;
 
 /// CPU time of this process [s]
 double cpu_time()
@@ -107,16 +109,6 @@ void RankEngine::assign_cells(const Domain& domain)
     if (outside.key > 0) throw LeftDomain{outside.id};
 }
 
-/// Work of a step for each particle, as SweepPlan counts it: 4, and 1 for each of its pairs
-std::vector<float> RankEngine::work_of_particles() const
-{
-    std::vector<float> work(own.particle.count, 4);
-    for (std::uint32_t n = 0; n < own.pairs.count; ++n) ++work[own.pairs.i.data()[n]];
-    for (std::uint32_t k = 0; k < own.particle.count; ++k)
-        if (is_ghost(k)) work[k] = 0;
-    return work;
-}
-
 /// Divides the domain again if its work is not balanced.
 ///
 /// The weight of a block is the work of its particles now times the CPU time of its process for a unit of
@@ -136,12 +128,12 @@ void RankEngine::divide_again(const Domain& domain)
         all.imbalance.busiest += of_processes.largest, all.imbalance.mean += of_processes.sum / all.size();
         reported = 0, steps_reported = 0;
     }
-    const std::vector<float> work = work_of_particles();
-    const double time = past.work > 0 ? past.time / past.work : 0,
-                 of_step = time * std::accumulate(work.begin(), work.end(), 0.);
-    if (all.reduced_for_all(Spread(of_step)).imbalance(all.size()) <= most) return;
+    const double time = past.work > 0 ? past.time / past.work : 0;
+    if (all.reduced_for_all(Spread(time * work_of_step)).imbalance(all.size()) <= most) return;
 
     const CellGrid& g = domain.grid;
+    std::vector<float> work(own.particle.count, particle_work);
+    for (std::uint32_t n = 0; n < own.pairs.count; ++n) work[own.pairs.i.data()[n]] += pair_work;
     std::vector<BlockWork> blocks;
     for (std::uint32_t k = 0; k < own.particle.count; ++k) {
         if (is_ghost(k)) continue;
@@ -185,8 +177,6 @@ void RankEngine::find_neighbours(const Domain& domain)
     assign_cells(domain);
     divide_again(domain);
     rebuild(domain);
-    const std::vector<float> work = work_of_particles();
-    work_of_step = std::accumulate(work.begin(), work.end(), 0.);
 }
 
 std::vector<LeavingParticle> RankEngine::outside(const Domain& domain)
@@ -422,6 +412,12 @@ void RankEngine::rebuild(const Domain& domain)
     for (const std::uint32_t k : ghosts.which) sent.push_back(now[k]);
     for (std::uint32_t k = first_ghost; k < p.count; ++k) received.push_back(now[k]);
     to_send.resize(sent.size()), to_receive.resize(received.size());
+
+    work_of_step = 0;
+    for (std::uint32_t k = 0; k < p.count; ++k)
+        if (!is_ghost(k)) work_of_step += particle_work;
+    for (std::uint32_t n = 0; n < pairs.count; ++n)
+        if (!is_ghost(pairs.i.data()[n])) work_of_step += pair_work;
 }
 
 /// Sends the state of the particles that are ghosts of other processes.

@@ -65,7 +65,6 @@ private:
     std::vector<BlockWork> loaded_blocks(const Particles<par::Cpu>& p, const CellGrid& g, const Cell& cell,
                                          std::int32_t& size) const;
     void assign_cells(const Domain& domain);
-    std::vector<float> work_of_particles() const;
     void divide_again(const Domain& domain);
     void rebuild(const Domain& domain);
     struct Ghosts;
@@ -93,11 +92,11 @@ private:
     float largest_overlap = 0;  ///< of all processes since take_largest_overlap(), in the first one
     struct Work {
         double time = 0;  ///< CPU time [s]
-        double work = 0;  ///< as work_of_particles()
+        double work = 0;  ///< of particles and pairs, see particle_work
     };
     Work present;                   ///< of the steps since the last period
     Work past;                      ///< weighted sums over the periods before
-    double work_of_step = 0;        ///< of the own particles
+    double work_of_step = 0;        ///< of the own particles and their pairs, at the last search
     long steps = 0;                 ///< since the last period
     long periods = 0;               ///< number of them
     double reported = 0;            ///< CPU time since the last measurement of the imbalance [s]

@@ -86,11 +86,11 @@ protected:
     /// square over groups of four, so that the accuracy of a body does not depend on the length of a chain.
     ///
     /// The iteration ends
-    /// - if the correction is below the tolerance, or below four ulp of the largest coordinate. With the rate
-    ///   θ, the ratio of the last two corrections, the error that remains is about θ/(1 - θ) times the
-    ///   correction. If it is not below the tolerance as well, the iteration goes on, unless the corrections
-    ///   no longer decrease (θ > 0.95) or `most_iterations` is reached. Or
-    /// - for k > 2, if it is below 1000 ulp and has decreased by less than a factor of two.
+    /// - if the correction and the error that remains are below the tolerance, or below four ulp of the
+    ///   largest coordinate. The error is about θ/(1 - θ) times the correction, with the ratio θ of the last
+    ///   two. It is ignored if the corrections no longer decrease (θ > 0.95), and for correction
+    ///   `most_iterations`;
+    /// - for k > 2, if the correction is below 1000 ulp and has decreased by less than a factor of two;
     /// - if the system keeps redundant rows, with correction `most_iterations`, unless it exceeds the first
     ///   one by far. Near a singular configuration the corrections in the direction of a small singular value
     ///   of the rows do not become small, and the residual there is left to the following steps.

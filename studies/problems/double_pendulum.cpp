@@ -58,14 +58,16 @@ Problem double_pendulum(const std::string& name, const std::string& what, const 
             .observable = {}};
 }
 
-const bool thick = io::Registry<Problem>::add(double_pendulum(
-    "double_pendulum", "planar double pendulum from rest, bars of section 0.1 m (Fang 2022, Table 3.2)", R"(
-  "note": "Fang (2022), Table 3.2: bars of 4 m and 2 m, section 0.1 m, 7800 kg/m3",
+const std::string bars_at_rest = R"(
   "gravity": [0, 0, -9.81], "end": 3,
   "bodies": [
     {"name": "bar_1", "mass": 312, "inertia": [0.52, 416.26, 416.26], "r": [0, 2, 0],  "A": [[0, 0, 1], [1, 0, 0], [0, 1, 0]]},
     {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
-  ],)"));
+  ],)";
+
+const bool thick = io::Registry<Problem>::add(double_pendulum(
+    "double_pendulum", "planar double pendulum from rest, bars of section 0.1 m (Fang 2022, Table 3.2)", R"(
+  "note": "Fang (2022), Table 3.2: bars of 4 m and 2 m, section 0.1 m, 7800 kg/m3",)" + bars_at_rest));
 
 const bool thin = io::Registry<Problem>::add(
     double_pendulum("double_pendulum_w005",
@@ -96,12 +98,7 @@ Problem with_strut()
 {
     Problem p = double_pendulum("double_pendulum_strut",
                                 "planar double pendulum whose end is held by a stiff spring-damper", R"(
-  "note": "double_pendulum with a strut from the ground to the end of bar 2",
-  "gravity": [0, 0, -9.81], "end": 3,
-  "bodies": [
-    {"name": "bar_1", "mass": 312, "inertia": [0.52, 416.26, 416.26], "r": [0, 2, 0],  "A": [[0, 0, 1], [1, 0, 0], [0, 1, 0]]},
-    {"name": "bar_2", "mass": 156, "inertia": [0.26, 52.13, 52.13],   "r": [0, 4, -1], "A": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}
-  ],)",
+  "note": "double_pendulum with a strut from the ground to the end of bar 2",)" + bars_at_rest,
                                 R"(,
   "forces": [
     {"name": "strut", "type": "spring-damper", "body_i": "ground", "s_bar_p_i": [0, 6, 0], "body_j": "bar_2", "s_bar_q_j": [1, 0, 0],

@@ -57,6 +57,14 @@ std::string largest_load(const dae::Model& model, const lie::State& x)
     return name;
 }
 
+/// Whether Newton's method converged slowly or not at all; empty if it is not known
+std::string kind_of_failure(const lie::NoConvergence& newton)
+{
+    if (!(newton.rate > 0)) return {};
+    return fmt::format(", on average {:.2g} times the one before: {}", newton.rate,
+                       newton.rate < 0.9 ? "slow convergence" : "no convergence");
+}
+
 /// Estimate of the reciprocal condition number of the saddle matrix at x; NaN if the matrix cannot be
 /// evaluated
 double reciprocal_condition(const dae::Model& model, const lie::State& x)
@@ -117,18 +125,6 @@ std::string step_text(double h)
     for (size_t e = text.find('e') + 2; text[e] == '0' && e + 1 < text.size();) text.erase(e, 1);
     return text;
 }
-
-namespace {
-
-/// Whether Newton's method converged slowly or not at all; empty if it is not known
-std::string kind_of_failure(const lie::NoConvergence& newton)
-{
-    if (!(newton.rate > 0)) return {};
-    return fmt::format(", on average {:.2g} times the one before: {}", newton.rate,
-                       newton.rate < 0.9 ? "slow convergence" : "no convergence");
-}
-
-}  // namespace
 
 Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model, const lie::State& node,
                    long number, double h, const lie::Scheme& scheme)

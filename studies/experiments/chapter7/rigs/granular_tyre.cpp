@@ -31,7 +31,8 @@ namespace {
 constexpr double g = 9.81, radius = 0.13,
                  tube = 0.035;          ///< of the tyre at its outer equator, of its tube [m]
 constexpr double load = 10, omega = 1;  ///< weight of fork and tyre [N], imposed [rad/s]
-constexpr double motor_torque = 1.7, motor_damping = 1.5;    ///< T_0 [N m], c [N m s]
+constexpr double motor_torque = 1.7, motor_damping = 1.5;  ///< T_0 [N m], c [N m s]
+constexpr long beds = 4;  ///< in which each test is run, with other random numbers
 constexpr double start_x = 0.15, resting = 0.3, ramp = 0.1;  ///< [m], [s], [s]
 
 struct TyreTest {
@@ -49,19 +50,17 @@ struct TyreTest {
 struct Grid {
     std::string name;
     double length, width, duration;  ///< of the bed [m], of the motion [s]
-    long beds;                       ///< in which each test is run
     std::vector<TyreTest> tests;
 };
 
 const double none = std::nan("");
 
 const std::vector<Grid> grids = {
-    {"quick", 0.6, 0.14, 1.5, 4, {{-0.3}, {0}, {0.3}, {0.6}, {0.3, 0}, {none}}},
+    {"quick", 0.6, 0.14, 1.5, {{-0.3}, {0}, {0.3}, {0.6}, {0.3, 0}, {none}}},
     {"full",
      0.9,
      0.2,
      3,
-     4,
      {{-0.5}, {-0.3}, {-0.1}, {0}, {0.1}, {0.3}, {0.5}, {0.7}, {0, 0}, {0.3, 0}, {0.7, 0}, {none}}}};
 
 struct Result {
@@ -70,8 +69,7 @@ struct Result {
     double pull = 0, load = 0, torque = 0;         ///< [N], [N], [N m]
     double sinkage = 0;                            ///< [m]
     double power = 0, energy_error = 0, work = 0;  ///< [W], [J], [J] on the grains from the start
-    /// Standard errors of the means over the beds; NaN for one bed
-    double pull_error = none, torque_error = none;
+    double pull_error = 0, torque_error = 0;       ///< standard errors of the means over the beds
     /// Rows t, pull, load, torque, sinkage: means over 0.05 s; rows x, z, speed of a grain and x, z of the
     /// axle at the end
     std::vector<double> motion = {}, grains = {};
@@ -89,7 +87,7 @@ void transfer(io::Archive& a, Result& r)
 /// bed
 Result pooled(const std::vector<Result>& of_beds)
 {
-    const auto n = static_cast<double>(of_beds.size());
+    constexpr double n = beds;
     const auto mean = [&](double Result::*x) {
         double sum = 0;
         for (const Result& r : of_beds) sum += r.*x;
@@ -98,7 +96,7 @@ Result pooled(const std::vector<Result>& of_beds)
     const auto error = [&](double Result::*x) {
         double squares = 0;
         for (const Result& r : of_beds) squares += std::pow(r.*x - mean(x), 2);
-        return n > 1 ? std::sqrt(squares / (n * (n - 1))) : none;
+        return std::sqrt(squares / (n * (n - 1)));
     };
     Result all = of_beds.front();
     for (double Result::*x : {&Result::slip, &Result::v, &Result::omega, &Result::pull, &Result::load,
@@ -355,34 +353,34 @@ void run_study(StudyContext& s)
     constexpr long substeps = 4;
     Rigs rigs(s);
     const double end = resting + grid.duration, from = resting + 0.5 * grid.duration;
-    std::vector<double> top(static_cast<std::size_t>(grid.beds));
+    std::vector<double> top(beds);
     const auto bed_number = [&](long number) {
         RigBed bed = soil;
         bed.number = number + 1;
         return bed;
     };
     const auto settle = [&] {
-        for (long k = 0; k < grid.beds; ++k) top[static_cast<std::size_t>(k)] = rigs.settle(bed_number(k));
+        for (long k = 0; k < beds; ++k) top[static_cast<std::size_t>(k)] = rigs.settle(bed_number(k));
     };
     s.job(settle, [&](io::Archive& a) { a.list(top); });
     std::vector<std::vector<Result>> runs(grid.tests.size());
     for (std::vector<Result>& of_beds : runs) of_beds.resize(top.size());
     const auto run_of = [&](long k) -> Result& {
-        return runs[static_cast<std::size_t>(k / grid.beds)][static_cast<std::size_t>(k % grid.beds)];
+        return runs[static_cast<std::size_t>(k / beds)][static_cast<std::size_t>(k % beds)];
     };
     const auto job = [&](long k) {
-        const TyreTest test = grid.tests[static_cast<std::size_t>(k / grid.beds)];
-        RigBed bed = bed_number(k % grid.beds);
+        const TyreTest test = grid.tests[static_cast<std::size_t>(k / beds)];
+        RigBed bed = bed_number(k % beds);
         bed.mu_r = test.mu_r;
-        const double highest = top[static_cast<std::size_t>(k % grid.beds)], axle = highest + radius + 1e-3;
-        const std::string of_bed = bed.number == 1 ? "" : fmt::format(" bed {}", bed.number);
+        const double highest = top[static_cast<std::size_t>(k % beds)], axle = highest + radius + 1e-3;
         io::Json pair;
         pair["body"] = "tyre";
-        const RigRun run = rigs.run(test.name() + of_bed, bed, model(test, bed, axle, end),
-                                    io::Json::List{tyre(bed, axle)}, pair, substeps, end);
+        const RigRun run =
+            rigs.run(fmt::format("{} bed {}", test.name(), bed.number), bed, model(test, bed, axle, end),
+                     io::Json::List{tyre(bed, axle)}, pair, substeps, end);
         run_of(k) = measure(test, run, highest, from);
     };
-    s.jobs(static_cast<long>(runs.size()) * grid.beds, job,
+    s.jobs(static_cast<long>(runs.size()) * beds, job,
            [&](io::Archive& a, long k) { transfer(a, run_of(k)); });
     std::vector<Result> results;
     for (std::size_t k = 0; k < runs.size(); ++k) {

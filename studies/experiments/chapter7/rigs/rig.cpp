@@ -53,6 +53,8 @@ io::Json case_of(const RigBed& bed, double mu, double mu_r, const io::Json& fill
             {"fill", {fill}}};
 }
 
+std::string name_of(const RigBed& bed) { return fmt::format("bed {}", bed.number); }
+
 /// Folder of a run or a bed
 std::string path_of(const std::string& parent, std::string name)
 {
@@ -95,11 +97,6 @@ std::string Rigs::folder_of(const std::string& parent, const std::string& name) 
     std::string path = path_of(parent, name);
     fs::create_directories(path);
     return path;
-}
-
-std::string Rigs::name_of(const RigBed& bed)
-{
-    return bed.number == 1 ? "bed" : fmt::format("bed {}", bed.number);
 }
 
 double Rigs::settle(const RigBed& bed)

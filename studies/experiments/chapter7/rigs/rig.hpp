@@ -64,7 +64,6 @@ public:
 private:
     /// Makes the folder of a run and reports its beginning.
     std::string folder_of(const std::string& parent, const std::string& name) const;
-    static std::string name_of(const RigBed& bed);
 
     const StudyContext& study;
     std::string folder, bed_folder, temporary;  ///< of the runs, of the bed; "": none

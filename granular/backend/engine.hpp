@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "granular/backend/finite_state.hpp"
 #include "granular/core/attached.hpp"
 #include "granular/core/clump.hpp"
 #include "granular/core/integrator.hpp"
@@ -10,6 +11,7 @@
 #include "granular/core/removal.hpp"
 #include "granular/core/watch.hpp"
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -46,6 +48,13 @@ struct Arrays {
     par::Array<Backend, ClumpBody> clump;  ///< ordered by the ids of their members
 };
 
+/// Particles that are consecutive in the order of the arrays, and their rows of the neighbour list
+struct Piece {
+    /// The particles of the piece, then copies of the other particles in their pairs
+    Arrays<par::Cpu>& arrays;
+    std::uint32_t particles;  ///< number without the copies
+};
+
 /// Force and torque on a boundary
 struct Wrench {
     Vec3 F = {0, 0, 0}, T = {0, 0, 0};  ///< [N], [N m] about Boundary::r
@@ -62,6 +71,30 @@ public:
     virtual Arrays<par::Cpu>& arrays() = 0;
     /// Transfers the arrays to the device after the caller has modified arrays().
     virtual void arrays_modified() = 0;
+    /// Calls f for all particles in pieces, which it must not change: the particles of several processes need
+    /// not fit into the memory of the first one. The order is that of arrays(); without `with_pairs` it is
+    /// any one, and there need not be any pairs.
+    virtual void each_piece(bool with_pairs, const std::function<void(const Piece&)>& f)
+    {
+        static_cast<void>(with_pairs);
+        Arrays<par::Cpu>& all = arrays();
+        f({all, all.particle.count});
+    }
+    /// The same without pairs, in pieces whose ids are larger than those of the pieces before. `ids`: larger
+    /// than all ids
+    virtual void each_piece_by_id(std::uint32_t ids, const std::function<void(const Particles<par::Cpu>&)>& f)
+    {
+        static_cast<void>(ids);
+        f(arrays().particle);
+    }
+    /// Number of pairs in the neighbour list
+    virtual std::size_t pair_count() { return arrays().pairs.count; }
+    /// See granular::is_finite.
+    virtual bool is_finite()
+    {
+        Arrays<par::Cpu>& all = arrays();
+        return granular::is_finite(all.particle, all.pairs, [](std::uint32_t) { return true; });
+    }
     /// Called before the other operations of a step: distributes arrays that were modified, if there are
     /// several processes.
     virtual void prepare(const Domain&) {}

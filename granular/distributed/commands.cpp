@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -50,6 +51,12 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
             return e.scatter(nullptr, c.domain, c.flag != 0);
         case Call::gather:
             return e.gather(nullptr);
+        case Call::sort_into_groups:
+            e.sort_into_groups(c.ids);
+            return;
+        case Call::gather_groups:
+            e.gather_groups(nullptr, c.first, c.last, c.flag != 0);
+            return;
         case Call::find_neighbours:
             try {
                 e.find_neighbours(c.domain);
@@ -64,6 +71,12 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
             return;
         case Call::remove:
             return e.remove(lists.next<std::uint32_t>());
+        case Call::pair_count:
+            e.pair_count();
+            return;
+        case Call::is_finite:
+            e.is_finite();
+            return;
         case Call::restore_list:
             return e.restore_list(c.domain);
         case Call::find_loads:
@@ -194,6 +207,62 @@ Arrays<par::Cpu>& FirstEngine::arrays()
     return whole;
 }
 
+/// Most particles that are collected as a whole, and of a piece if its groups are small
+constexpr std::uint64_t most_of_piece = 1 << 14;
+
+void FirstEngine::each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f)
+{
+    if (whole_is_current) return f({whole, whole.particle.count});
+    const std::vector<std::uint64_t> particles =
+        both({.call = Call::sort_into_groups, .ids = ids}, {}, [&] { return own.sort_into_groups(ids); });
+    const std::uint64_t all_particles = std::accumulate(particles.begin(), particles.end(), std::uint64_t{0});
+    if (all_particles <= most_of_piece) {
+        Arrays<par::Cpu>& kept = arrays();
+        return f({kept, kept.particle.count});
+    }
+    Arrays<par::Cpu> piece;
+    for (std::size_t first = 0, last = 0; last < particles.size(); first = last) {
+        std::uint64_t of_piece = 0;
+        do of_piece += particles[last++];
+        while (last < particles.size() && of_piece + particles[last] <= most_of_piece);
+        if (of_piece == 0) continue;
+        const std::uint32_t number =
+            both({.call = Call::gather_groups, .flag = with_pairs ? 1 : 0, .first = first, .last = last}, {},
+                 [&] { return own.gather_groups(&piece, first, last, with_pairs); });
+        f({piece, number});
+    }
+}
+
+void FirstEngine::each_piece(bool with_pairs, const std::function<void(const Piece&)>& f)
+{
+    each_piece(0, with_pairs, f);
+}
+
+void FirstEngine::each_piece_by_id(std::uint32_t ids,
+                                   const std::function<void(const Particles<par::Cpu>&)>& f)
+{
+    each_piece(std::max(ids, 1u), false, [&](const Piece& piece) { f(piece.arrays.particle); });
+}
+
+std::size_t FirstEngine::pair_count()
+{
+    if (whole_is_current) return whole.pairs.count;
+    return both({.call = Call::pair_count}, {}, [&] { return own.pair_count(); });
+}
+
+bool FirstEngine::is_finite()
+{
+    if (whole_is_current) return Engine::is_finite();
+    return both({.call = Call::is_finite}, {}, [&] { return own.is_finite(); });
+}
+
+/// The copy of all arrays is no longer that of the processes.
+void FirstEngine::no_longer_whole()
+{
+    if (ranks_are_current && whole.particle.count > most_of_piece) whole = {};
+    whole_is_current = false;
+}
+
 void FirstEngine::arrays_modified() { whole_is_current = true, ranks_are_current = false; }
 
 void FirstEngine::scatter(const Domain& domain, bool keeps_list)
@@ -263,7 +332,7 @@ void FirstEngine::set_attached(const std::vector<AttachedParticle>& particles)
 /// Each process moves its particles and its ghosts.
 void FirstEngine::move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses)
 {
-    whole_is_current = false;
+    no_longer_whole();
     Lists lists;
     lists.add(poses);
     both({.call = Call::move_attached, .domain = domain}, lists, [&] { own.move_attached(domain, poses); });
@@ -288,7 +357,7 @@ void FirstEngine::find_neighbours(const Domain& domain)
             }
             return {};
         });
-    whole_is_current = false;
+    if (!lost || !scatters) no_longer_whole();
     if (!lost) return;
     // After a scatter there is no list yet from which the arrays could be collected.
     if (scatters) whole_is_current = true, ranks_are_current = false;
@@ -320,14 +389,14 @@ void FirstEngine::prepare(const Domain& domain)
 
 void FirstEngine::find_loads(const Domain& domain, float h, bool store, double path)
 {
-    whole_is_current = false;
+    no_longer_whole();
     both({.call = Call::find_loads, .domain = domain, .h = h, .flag = store ? 1 : 0, .path = path}, {},
          [&] { own.find_loads(domain, h, store, path); });
 }
 
 float FirstEngine::advance(const StepParameters& step)
 {
-    whole_is_current = false;
+    no_longer_whole();
     return both({.call = Call::advance, .step = step}, {}, [&] { return own.advance(step); });
 }
 

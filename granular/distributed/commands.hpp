@@ -3,11 +3,11 @@
 
 #pragma once
 
+#include "granular/distributed/packed_lists.hpp"
 #include "granular/distributed/rank_engine.hpp"
 
 #include <map>
 #include <memory>
-#include <string>
 #include <type_traits>
 
 namespace hilda::granular {
@@ -23,6 +23,10 @@ enum class Call : std::int32_t {
     set_watched,
     scatter,
     gather,
+    sort_into_groups,
+    gather_groups,
+    pair_count,
+    is_finite,
     find_neighbours,
     outside,
     remove,
@@ -50,41 +54,11 @@ struct Command {
     float h = 0;
     std::int32_t flag = 0;
     double path = 0, s = 0;
-    std::uint64_t bytes = 0;  ///< of further arguments, which follow
+    std::uint32_t ids = 0;
+    std::uint64_t first = 0, last = 0;  ///< groups
+    std::uint64_t bytes = 0;            ///< of further arguments, which follow
 };
 static_assert(std::is_trivially_copyable_v<Command>);
-
-/// Arguments of variable length: lists, one after the other
-class Lists {
-public:
-    Lists() = default;
-    explicit Lists(std::string bytes) : all(std::move(bytes)) {}
-    const std::string& bytes() const { return all; }
-
-    template <class T>
-    void add(const std::vector<T>& list)
-    {
-        static_assert(std::is_trivially_copyable_v<T>);
-        const std::uint64_t count = list.size();
-        all.append(reinterpret_cast<const char*>(&count), sizeof count);
-        all.append(reinterpret_cast<const char*>(list.data()), count * sizeof(T));
-    }
-    template <class T>
-    std::vector<T> next()
-    {
-        std::uint64_t count = 0;
-        std::memcpy(&count, all.data() + at, sizeof count);
-        at += sizeof count;
-        std::vector<T> list(count);
-        if (count > 0) std::memcpy(static_cast<void*>(list.data()), all.data() + at, count * sizeof(T));
-        at += count * sizeof(T);
-        return list;
-    }
-
-private:
-    std::string all;
-    std::size_t at = 0;
-};
 
 /// Makes the calls of the first process in this one, until it ends. Returns its exit code.
 int serve_engines(const Communicator& all);
@@ -92,7 +66,8 @@ int serve_engines(const Communicator& all);
 /// Of the first process: ends serve_engines() in the others.
 void end_processes(const Communicator& all, int code);
 
-/// The engine of all processes, in the first one. It has a copy of all arrays as an engine of a GPU has.
+/// The engine of all processes, in the first one. As an engine of a GPU it has a copy of all arrays where
+/// they are read or changed as a whole, until the next step.
 class FirstEngine final : public Engine {
 public:
     /// `number`: differs from those of the other engines
@@ -101,6 +76,11 @@ public:
 
     Arrays<par::Cpu>& arrays() override;
     void arrays_modified() override;
+    std::size_t pair_count() override;
+    bool is_finite() override;
+    void each_piece(bool with_pairs, const std::function<void(const Piece&)>& f) override;
+    void each_piece_by_id(std::uint32_t ids,
+                          const std::function<void(const Particles<par::Cpu>&)>& f) override;
     void prepare(const Domain& domain) override;
     void set_laws(const std::vector<PairLaw>& laws, const std::vector<std::uint8_t>& law_of,
                   std::uint32_t materials) override;
@@ -134,6 +114,8 @@ private:
     template <class F>
     auto both(const Command& command, const Lists& lists, const F& f) const;
     void scatter(const Domain& domain, bool keeps_list);
+    void each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f);
+    void no_longer_whole();
 
     const Communicator& all;
     const int number;

@@ -73,20 +73,21 @@ public:
     /// Messages from one process to another, which receives them in the order in which they were sent
     void send(int to, const void* bytes, std::size_t count) const;
     void receive(int from, void* bytes, std::size_t count) const;
-    template <class T>
-    void send(int to, const std::vector<T>& values) const
+    /// `values`: a vector or string
+    template <class List>
+    void send(int to, const List& values) const
     {
         const std::uint64_t count = values.size();
         send(to, &count, sizeof count);
-        send(to, values.data(), count * sizeof(T));
+        send(to, values.data(), count * sizeof(typename List::value_type));
     }
-    template <class T>
-    void receive(int from, std::vector<T>& values) const
+    template <class List>
+    void receive(int from, List& values) const
     {
         std::uint64_t count = 0;
         receive(from, &count, sizeof count);
         values.resize(count);
-        receive(from, values.data(), count * sizeof(T));
+        receive(from, values.data(), count * sizeof(typename List::value_type));
     }
 
     /// Whether the processes are in a call of the first one: an exception there leaves them out of step.

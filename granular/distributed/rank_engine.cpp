@@ -301,6 +301,7 @@ void RankEngine::rebuild(const Domain& domain)
     Particles<par::Cpu>& p = own.particle;
     Pairs<par::Cpu>& pairs = own.pairs;
     const CellGrid& g = grid = domain.grid;
+    replicas = domain.replicas;
     const std::uint32_t before = p.count, *const id = p.id.data();
     // The particles that stay, and the place of each particle among them
     stay.clear(), place.assign(before, none), owner.assign(before, all.rank());

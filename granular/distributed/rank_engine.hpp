@@ -32,6 +32,15 @@ public:
     /// Collects the arrays in the first process, in the order of a single process; nullptr in the others
     void gather(Arrays<par::Cpu>* whole);
 
+    /// Sorts the own particles into groups: by the cells of the last search, or by their ids, which are below
+    /// `ids`, if that is positive. Returns the numbers of particles of all processes, in the first one.
+    std::vector<std::uint64_t> sort_into_groups(std::uint32_t ids);
+    /// Collects the particles of the groups first to last - 1, as long as the particles have not changed
+    /// since sort_into_groups(): see Piece. Without `with_pairs` there are no pairs. Returns the number of
+    /// particles of the piece, in the first process; `piece` is nullptr in the others.
+    std::uint32_t gather_groups(Arrays<par::Cpu>* piece, std::size_t first, std::size_t last,
+                                bool with_pairs);
+
     /// Also moves particles to the processes in whose part they are.
     void find_neighbours(const Domain& domain) override;
     /// Of all processes, in the first one
@@ -52,6 +61,8 @@ public:
     ParticleSums particle_sums(const Domain& domain, bool only_forces) override;
     ContactSums contact_sums(const Domain& domain, float h) override;
     KineticSums kinetic_sums(double s) override;
+    std::size_t pair_count() override;
+    bool is_finite() override;
     /// Of all processes
     double total_bytes() const;
 
@@ -72,11 +83,22 @@ private:
     void find_others_around(const CellGrid& grid, std::uint32_t cell, bool of_block,
                             std::vector<int>& others) const;
     void send_ghosts();
+    template <class IsHere>
+    std::uint32_t collect(Arrays<par::Cpu>* to, const std::vector<std::uint32_t>& which,
+                          const IsHere& is_here);
+    std::uint32_t collect_particles(Arrays<par::Cpu>* to, const std::vector<std::uint32_t>& which);
+    std::size_t group_of(std::uint32_t k) const;
 
     const Communicator& all;
     Partition partition;
     UsedArrays used;
     CellGrid grid;  ///< of the last search
+    std::uint64_t replicas = 1;
+    // of sort_into_groups()
+    bool groups_are_of_ids = false;
+    std::uint64_t numbers_of_group = 1;  ///< cells or ids of a group
+    std::vector<std::uint32_t> grouped;  ///< indices of the own particles
+    std::vector<std::uint32_t> group_start;
     std::optional<Plan> ghost_plan;
     std::vector<std::uint32_t> sent;      ///< indices of the particles that are ghosts of others, in order
     std::vector<std::uint32_t> received;  ///< indices of the ghosts, in the order of the messages

@@ -23,16 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 16};
-
-/// Refuses the first element of the list that was read last which is not finite.
-template <class Array>
-void check_vectors(const io::Archive& a, const Array& list, const char* what)
-{
-    a.check_each(
-        list, std::string(what) + " must be finite", [](const Float4& x) { return finite(x); },
-        [](const Float4& x) { return shown(x); });
-}
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 17};
 
 /// "" if the domain is one that World can have: the neighbour search uses it as an index range. Otherwise the
 /// member that it cannot have, and its value.
@@ -106,15 +97,6 @@ bool valid_place(const Place& b)
            std::abs(b.p.e0 * b.p.e0 + b.p.e.dot(b.p.e) - 1) < 1e-6;
 }
 
-bool valid_compensation(const Compensation& c)
-{
-    return finite(to_double(load_bfloat16(c.v))) && finite(to_double(load_bfloat16(c.omega)));
-}
-std::string shown(const Compensation& c)
-{
-    return shown(to_double(load_bfloat16(c.v))) + ", " + shown(to_double(load_bfloat16(c.omega)));
-}
-
 /// Ordered by ids below `ids`, with finite places and known boundaries
 bool valid_attached(const std::vector<AttachedParticle>& all, std::uint32_t ids, std::size_t boundaries)
 {
@@ -182,72 +164,7 @@ std::string changes(const Boundary& now, const Boundary& saved)
     return all.empty() ? "other bytes" : all;
 }
 
-/// The n ids are below `limit`, and all differ.
-bool valid_ids(const std::uint32_t* id, std::size_t n, std::uint32_t limit)
-{
-    std::vector<std::uint32_t> sorted(id, id + n);
-    std::sort(sorted.begin(), sorted.end());
-    return (n == 0 || sorted.back() < limit) &&
-           std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-}
-
-/// Writes the elements of a pair array that belong to contacts, as Archive::list. Only they have a history.
-template <class T>
-void write_contacts(io::Archive& a, const Pairs<par::Cpu>& pairs, std::size_t contacts,
-                    par::Array<par::Cpu, T>& values)
-{
-    a.count(contacts, sizeof(T));
-    for (std::uint32_t k = 0; contacts > 0 && k < pairs.count; ++k)
-        if (pairs.in_contact.data()[k] != 0) a.value(values.data()[k]);
-}
-
-void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs)
-{
-    const std::size_t n =
-        pairs.count - std::count(pairs.in_contact.data(), pairs.in_contact.data() + pairs.count, 0);
-    write_contacts(a, pairs, n, pairs.i), write_contacts(a, pairs, n, pairs.j);
-    write_contacts(a, pairs, n, pairs.history);
-    write_contacts(a, pairs, pairs.rotation_history.size() > 0 ? n : 0, pairs.rotation_history);
-    write_contacts(a, pairs, pairs.internal.size() > 0 ? n : 0, pairs.internal);
-}
-
-void read_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, std::size_t particles, std::size_t boundaries,
-                std::size_t triangles)
-{
-    const auto valid_surface = [&](std::uint32_t k) {
-        return Surfaces::is_triangle(k) ? k - Surfaces::first_triangle < triangles : k < boundaries;
-    };
-    const std::size_t n = a.list(pairs.i);
-    const auto list = [&](auto& values, bool optional) {
-        const std::size_t got = a.list(values);
-        a.check(got == n || (optional && got == 0), "wrong number of pairs, got " + std::to_string(got));
-    };
-    list(pairs.j, false), list(pairs.history, false);
-    check_vectors(a, pairs.history, "a history");
-    list(pairs.rotation_history, true);
-    check_vectors(a, pairs.rotation_history, "a history");
-    list(pairs.internal, true);
-    check_vectors(a, pairs.internal, "a history");
-    for (std::size_t k = 0; k < n; ++k) {
-        const std::uint32_t j = pairs.j.data()[k];
-        const bool valid_j =
-            (j & PairView::boundary_bit) != 0 ? valid_surface(j & ~PairView::boundary_bit) : j < particles;
-        if (!(pairs.i.data()[k] < particles && valid_j))
-            a.check(false, "unknown particle of a pair, got " + std::to_string(pairs.i.data()[k]) + " and " +
-                               std::to_string(j));
-    }
-    // the pairs of a list before a neighbour search
-    pairs.count = static_cast<std::uint32_t>(n);
-    pairs.in_contact.resize(n);
-    par::fill(par::Cpu(), pairs.in_contact.data(), n, std::uint8_t{1});
-}
-
 }  // namespace
-
-/// Position of a particle when the neighbour list was built, see Position. Its owner cell is still the same.
-struct World::PlaceAtBuild {
-    std::int32_t x, y, z;
-};
 
 void World::transfer(io::Archive& a)
 {
@@ -318,101 +235,6 @@ void World::transfer(io::Archive& a)
         if (!moved.empty())
             for (const Boundary& b : boundaries) moved_to.emplace_back(b);
     }
-    transfer_particles(a);
-    Particles<par::Cpu>& p = engine->arrays().particle;
-    std::size_t n = p.count;
-    a.value(particle_displacement), a.value(boundary_displacement);
-    a.check(particle_displacement >= 0 && boundary_displacement >= 0,
-            "invalid displacements, got " + shown(particle_displacement) + " and " +
-                shown(boundary_displacement));
-    a.list(boundaries_at_build);
-    const bool has_list = std::isfinite(particle_displacement);
-    a.check(!has_list || boundaries_at_build.size() == boundaries.size(),
-            "wrong number of boundaries, got " + std::to_string(boundaries_at_build.size()));
-    a.check_each(
-        boundaries_at_build, "invalid place of a boundary",
-        [](const BoundaryPlace& b) { return valid_place(b); },
-        [](const BoundaryPlace& b) { return "r " + shown(b.r) + ", axis " + shown(b.axis); });
-    n = has_list ? n : 0;
-    a.count(n, sizeof(PlaceAtBuild));
-    if (!a.reads()) {
-        for (std::size_t k = 0; k < n; ++k) {
-            const Position& at = p.position_at_build.data()[k];
-            PlaceAtBuild place{at.x, at.y, at.z};
-            a.value(place);
-        }
-        return write_pairs(a, engine->arrays().pairs);
-    }
-    a.check(n == (has_list ? p.count : 0), "wrong number of particles, got " + std::to_string(n));
-    std::vector<PlaceAtBuild> at_build(n);
-    for (std::size_t k = 0; k < n; ++k) {
-        PlaceAtBuild& place = at_build[k];
-        a.value(place);
-        if (!is_near_domain(domain.grid, {p.position.data()[k].cell, place.x, place.y, place.z}))
-            a.check(false, "invalid position of " + name_of(p.id.data()[k]) + ", got " +
-                               shown(Vec3{double(place.x), double(place.y), double(place.z)}));
-    }
-    read_pairs(a, engine->arrays().pairs, p.count, boundaries.size(), meshes->triangle.size());
-    if (has_list)
-        restore_neighbours(a.name(), std::move(at_build));
-    else
-        engine->arrays_modified();
-    if (posed.empty())
-        attached_changed = !attached.empty();
-    else
-        set_attached();
-}
-
-void World::transfer_particles(io::Archive& a)
-{
-    Particles<par::Cpu>& p = engine->arrays().particle;
-    std::size_t n = p.count;
-    const auto list = [&](auto& values) {
-        const std::size_t got = a.list(values, n);
-        a.check(got == n, "wrong number of particles, got " + std::to_string(got));
-    };
-    /// An array that only some schemes use
-    const auto list_if = [&](bool used, auto& values, const char* what) {
-        const std::size_t got = a.list(values);
-        a.check(got == (used ? n : 0),
-                "an array of another integrator, got " + std::to_string(got) + " elements");
-        check_vectors(a, values, what);
-    };
-    n = a.list(p.position, n);
-    a.check_each(
-        p.position, "invalid position of a particle",
-        [&](const Position& at) { return is_near_domain(domain.grid, at); },
-        [&](const Position& at) {
-            return "cell " + std::to_string(at.cell) + ", " +
-                   shown(Vec3{double(at.x), double(at.y), double(at.z)});
-        });
-    list(p.velocity);
-    check_vectors(a, p.velocity, "a velocity");
-    a.check_each(
-        p.velocity, "a radius must be positive and that of the domain",
-        [&](const Float4& v) {
-            return v.w > 0 && v.w <= domain.largest && (domain.radius == 0 || v.w == domain.radius);
-        },
-        [](const Float4& v) { return shown(v.w); });
-    list(p.omega);
-    check_vectors(a, p.omega, "an angular velocity");
-    a.check_each(
-        p.omega, "an inverse mass must not be negative", [](const Float4& w) { return w.w >= 0; },
-        [](const Float4& w) { return shown(w.w); });
-    list(p.compensation);
-    a.check_each(p.compensation, "a rounding error of a velocity must be finite", valid_compensation,
-                 [](const Compensation& c) { return shown(c); });
-    list(p.species);
-    a.check_each(
-        p.species, "invalid material or replica of a particle",
-        [&](const Species& s) { return s.material < materials.size() && s.replica < domain.replicas; },
-        [](const Species& s) { return std::to_string(s.material) + ", " + std::to_string(s.replica); });
-    list(p.id);
-    a.check(!a.reads() || (next_id >= n && next_id - n == static_cast<std::uint64_t>(total_outflow.count) &&
-                           valid_ids(p.id.data(), n, next_id)),
-            "the ids of the particles must be below the next one, " + std::to_string(next_id) +
-                ", and differ, got " + std::to_string(n) + " particles, the largest id " +
-                std::to_string(n > 0 ? *std::max_element(p.id.data(), p.id.data() + n) : 0));
     if (attached_changed) posed.clear();
     a.list(attached);
     a.check(valid_attached(attached, next_id, boundaries.size()),
@@ -439,81 +261,23 @@ void World::transfer_particles(io::Archive& a)
             return "r " + shown(b.r) + ", v " + shown(b.v) + ", omega " + shown(b.omega) + ", " +
                    shown_rotation(b.p);
         });
-    const bool previous = detail::uses_previous_acceleration(options.scheme);
-    list_if(previous, p.acc, "an acceleration"), list_if(previous, p.alpha, "an angular acceleration");
-    const std::size_t oriented = a.list(p.orientation);
-    const auto is_unit = [](const Float4& e) { return std::abs(length({e.x, e.y, e.z, e.w}) - 1) < 1e-3; };
-    const auto is_error = [](const Float4& e) { return length({e.x, e.y, e.z, e.w}) < 1e-3; };
-    const auto shown_four = [](const Float4& e) { return shown(e); };
-    a.check_each(p.orientation, "Euler parameters must have the length 1", is_unit, shown_four);
-    const std::size_t compensated = a.list(p.orientation_compensation);
-    a.check_each(p.orientation_compensation, "invalid rounding error of Euler parameters", is_error,
-                 shown_four);
-    if (compensated != oriented || oriented != (options.orientation ? n : 0))
-        throw io::IoError(a.name() + ": the checkpoint " + (options.orientation ? "has no" : "has") +
-                          " orientations, but /orientation of this case is " +
-                          (options.orientation ? "true" : "false"));
-    if (a.reads()) {
-        p.count = static_cast<std::uint32_t>(n);
-        inserted_count = n;
-    }
-    transfer_clumps(a);
-}
-
-/// Builds the neighbour list of the saved world, with the positions for which it was built. Throws
-/// io::IoError.
-void World::restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build)
-{
-    const std::vector<Boundary> now = boundaries;
-    for (std::size_t k = 0; k < boundaries.size(); ++k)
-        boundaries[k].r = boundaries_at_build[k].r, boundaries[k].axis = boundaries_at_build[k].axis,
-        boundaries[k].p = boundaries_at_build[k].p;
-    const auto exchange = [&] {
-        Position* const position = engine->arrays().particle.position.data();
-        for (std::size_t k = 0; k < at_build.size(); ++k) {
-            Position& p = position[k];
-            const PlaceAtBuild place = std::exchange(at_build[k], {p.x, p.y, p.z});
-            p.x = place.x, p.y = place.y, p.z = place.z;
-        }
-        engine->arrays_modified();
-    };
-    // The search must not change the order of the particles.
-    const auto order = [&] {
-        const Particles<par::Cpu>& p = engine->arrays().particle;
-        std::uint64_t sum = 0;
-        for (std::size_t k = 0; k < at_build.size(); ++k) {
-            const std::uint32_t words[] = {p.id.data()[k], p.position.data()[k].cell};
-            sum = io::checksum(sum, reinterpret_cast<const char*>(words), sizeof words);
-        }
-        return sum;
-    };
-    const std::uint64_t saved = order();
-    const auto displacements = std::pair(particle_displacement, boundary_displacement);
-    const long rebuilds = rebuild_count;
-    // The search would assign the clumps to the cells of their present places.
-    par::Array<par::Cpu, ClumpBody>& clumps_now = engine->arrays().clump;
-    const std::vector<ClumpBody> clumps_saved(clumps_now.data(), clumps_now.data() + clumps_now.size());
-    clumps_now.resize(0);
-    exchange();
-    try {
-        find_neighbours();
-    } catch (const LeftDomain& lost) {
-        throw io::IoError(file + ": the checkpoint is damaged: " + name_of(lost.id) +
-                          " was outside the domain when the neighbour list was built");
-    } catch (const io::InvalidInput& e) {
-        throw io::IoError(file + ": the checkpoint is damaged: " + e.what());
-    }
-    const std::uint64_t found = order();
-    if (found != saved)
-        throw io::IoError(file +
-                          ": the checkpoint is damaged: the checksum of the order of the particles must be " +
-                          std::to_string(found) + ", got " + std::to_string(saved));
-    clumps_now.resize(clumps_saved.size());
-    std::copy(clumps_saved.begin(), clumps_saved.end(), clumps_now.data());
-    exchange();
-    boundaries = now;
-    std::tie(particle_displacement, boundary_displacement) = displacements;
-    rebuild_count = rebuilds;
+    a.value(particle_displacement), a.value(boundary_displacement);
+    a.check(particle_displacement >= 0 && boundary_displacement >= 0,
+            "invalid displacements, got " + shown(particle_displacement) + " and " +
+                shown(boundary_displacement));
+    a.list(boundaries_at_build);
+    a.check(!std::isfinite(particle_displacement) || boundaries_at_build.size() == boundaries.size(),
+            "wrong number of boundaries, got " + std::to_string(boundaries_at_build.size()));
+    a.check_each(
+        boundaries_at_build, "invalid place of a boundary",
+        [](const BoundaryPlace& b) { return valid_place(b); },
+        [](const BoundaryPlace& b) { return "r " + shown(b.r) + ", axis " + shown(b.axis); });
+    transfer_particles(a);
+    if (!a.reads()) return;
+    if (posed.empty())
+        attached_changed = !attached.empty();
+    else
+        set_attached();
 }
 
 std::string World::to_bytes(const std::string& run_id, const std::function<void(io::Archive&)>& more)

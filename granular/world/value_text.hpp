@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Texts of values, for messages.
+/// Texts of values, for messages, and refusals of values of a checkpoint.
 
 #pragma once
 
@@ -7,6 +7,7 @@
 #include "granular/core/particles.hpp"
 #include "io/json.hpp"
 
+#include <cmath>
 #include <string>
 
 namespace hilda::granular::detail {
@@ -25,6 +26,18 @@ inline std::string shown(const Inertia& J)
 {
     return '(' + shown(Vec3{J.xx, J.xy, J.zx}) + ", " + shown(Vec3{J.xy, J.yy, J.yz}) + ", " +
            shown(Vec3{J.zx, J.yz, J.zz}) + ')';
+}
+
+/// Refuses the first element of the list that was read last which is not finite. `a`: an io::Archive
+template <class Archive, class Array>
+void check_vectors(const Archive& a, const Array& list, const char* what)
+{
+    a.check_each(
+        list, std::string(what) + " must be finite",
+        [](const Float4& x) {
+            return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z) && std::isfinite(x.w);
+        },
+        [](const Float4& x) { return shown(x); });
 }
 
 }  // namespace hilda::granular::detail

@@ -334,7 +334,6 @@ public:
         void add(const Particle& p, const Vec3& gravity) { add(p, p.omega, gravity); }
         /// The rotational energy is 1/5 m R² omega·w.
         void add(const Particle& p, const Vec3& w, const Vec3& gravity);
-        void add(const Sums& part);
     };
     Sums sums() const;
     double kinetic_energy() const { return sums().kinetic_energy; }
@@ -367,7 +366,7 @@ public:
     /// Number of particles, pending ones included
     std::size_t count() const { return inserted_count + pending.size(); }
     /// Number of pairs in the neighbour list
-    std::size_t candidates() const { return engine->arrays().pairs.count; }
+    std::size_t candidates() const { return engine->pair_count(); }
     /// Number of times the neighbour list was built
     long rebuilds() const { return rebuild_count; }
     /// Wall time spent in the parts of the steps since the last call [s]
@@ -418,6 +417,7 @@ private:
     struct PlaceAtBuild;
     void transfer(io::Archive& a);
     void transfer_particles(io::Archive& a);
+    void transfer_piece(io::Archive& a, Particles<par::Cpu>& p, std::size_t n);
     void restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build);
     struct CellPosition {
         Position position;
@@ -430,7 +430,7 @@ private:
     void append_pending();
     void write_particle(std::uint32_t k, const Particle& particle, const CellPosition& at);
     void end_insertion(const std::vector<Particle>& all);
-    Particle particle_at(std::uint32_t k) const;
+    Particle particle_at(const Particles<par::Cpu>& in, std::uint32_t k) const;
     Domain domain_of(const std::vector<Particle>& all) const;
     bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
     [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;
@@ -439,8 +439,9 @@ private:
     void check_laws(const std::vector<Particle>& added) const;
     void check_overlaps(std::uint32_t first) const;
     struct CurrentLoads;
+    struct ExactTotals;
     template <class F>
-    void for_current_loads(const F& f) const;
+    void for_current_loads(const Arrays<par::Cpu>& of, const F& f) const;
     void update_for_query() const;
     ContactRecord contact(const CurrentLoads& now, std::uint32_t pair) const;
     template <class To>
@@ -479,7 +480,8 @@ private:
     void set_attached();
     void move_attached();
     bool is_posed() const;
-    void add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const;
+    template <class OnBoundary>
+    void add_wrench(std::vector<OnBoundary>& to, const ContactRecord& c) const;
     [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();
@@ -506,7 +508,8 @@ private:
     void check_watch();
     void check_tools();
     [[noreturn]] void throw_overlap() const;
-    void check_histories() const;
+    void check_particles(const Piece& piece) const;
+    void check_histories(const Arrays<par::Cpu>& of) const;
     [[noreturn]] void throw_lost(std::uint32_t k, const std::string& how) const;
 
     WorldOptions options;

@@ -135,6 +135,7 @@ std::uint32_t World::add_clump(const Clump& given)
 
 std::vector<Clump> World::clumps() const
 {
+    if (templates.empty()) return {};
     const auto number = static_cast<std::uint32_t>(engine->arrays().clump.size());
     std::vector<Clump> all;
     all.reserve(number + pending_clumps.size());
@@ -209,6 +210,7 @@ Vec3 World::offset_in_clump(std::uint32_t id) const
 /// Largest distance of a particle from the centre of mass of its clump, of inserted and pending ones [m]
 double World::reach_of_clumps() const
 {
+    if (templates.empty()) return 0;
     double reach = 0;
     const auto include = [&](std::size_t shape, double scale) {
         reach = std::max(reach, scale * clump_tables.shape[shape].reach);
@@ -335,6 +337,10 @@ void World::throw_turns_too_far() const
 
 void World::transfer_clumps(io::Archive& a)
 {
+    if (templates.empty() && !a.reads()) {
+        std::size_t none_of_them = 0;
+        return a.count(none_of_them, sizeof(ClumpBody));
+    }
     par::Array<par::Cpu, ClumpBody>& all = engine->arrays().clump;
     const Particles<par::Cpu>& p = engine->arrays().particle;
     a.list(all);

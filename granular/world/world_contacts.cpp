@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Queries of contacts at t. Loads are computed again from copies of the histories, so that a query does not
 // change the state.
+#include "granular/backend/fixed_sum.hpp"
 #include "granular/core/surfaces/hand_over.hpp"
 #include "granular/world/world_impl.hpp"
 
@@ -15,7 +16,8 @@ using namespace detail;
 
 /// Adds the force and the torque of a contact on its boundary, and on the boundaries to which its particles
 /// are attached, and on the bodies of which these are parts, about Boundary::r.
-void World::add_wrench(std::vector<Wrench>& to, const ContactRecord& c) const
+template <class OnBoundary>
+void World::add_wrench(std::vector<OnBoundary>& to, const ContactRecord& c) const
 {
     const auto add = [&](int number, double sign) {
         if (number < 0) return;
@@ -92,11 +94,10 @@ private:
 
 }  // namespace
 
-/// Calls f(number of a part, CurrentLoads) for all parts of the pairs, in parallel.
+/// Calls f(number of a part, CurrentLoads) for all parts of the pairs of these arrays, in parallel.
 template <class F>
-void World::for_current_loads(const F& f) const
+void World::for_current_loads(const Arrays<par::Cpu>& of, const F& f) const
 {
-    const Arrays<par::Cpu>& of = engine->arrays();
     const Pairs<par::Cpu>& pairs = of.pairs;
     const bool rotation_laws = pairs.rotation_history.size() > 0, internal = pairs.internal.size() > 0;
     // With velocity Verlet the histories belong to t already. With the other schemes they belong to the
@@ -186,19 +187,21 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
 std::vector<ContactRecord> World::contacts() const
 {
     update_for_query();
-    std::vector<std::vector<ContactRecord>> parts(CurrentLoads::parts(engine->arrays().pairs.count));
-    for_current_loads([&](std::uint32_t part, const CurrentLoads& now) {
-        for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n)
-            if (now.touching(n)) parts[part].push_back(contact(now, n));
-    });
-    std::size_t number = 0;
-    for (const auto& part : parts) number += part.size();
     std::vector<ContactRecord> all;
-    all.reserve(number);
-    for (auto& part : parts) {
-        all.insert(all.end(), part.begin(), part.end());
-        std::vector<ContactRecord>().swap(part);
-    }
+    engine->each_piece(true, [&](const Piece& piece) {
+        std::vector<std::vector<ContactRecord>> parts(CurrentLoads::parts(piece.arrays.pairs.count));
+        for_current_loads(piece.arrays, [&](std::uint32_t part, const CurrentLoads& now) {
+            for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n)
+                if (now.touching(n)) parts[part].push_back(contact(now, n));
+        });
+        std::size_t number = all.size();
+        for (const auto& part : parts) number += part.size();
+        if (all.empty()) all.reserve(number);
+        for (auto& part : parts) {
+            all.insert(all.end(), part.begin(), part.end());
+            std::vector<ContactRecord>().swap(part);
+        }
+    });
     // Keys differ, so that the order is unique; std::stable_sort needs more memory.
     std::sort(all.begin(), all.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return std::tie(a.boundary, a.i, a.j) < std::tie(b.boundary, b.i, b.j);
@@ -214,68 +217,93 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
     return on[static_cast<std::size_t>(b)];
 }
 
-/// Adds all contacts to the totals *to(number of the replica); the stress is that over a volume of 1.
+namespace {
+
+struct ExactWrench {
+    FixedVec F, T;
+    Wrench value() const { return {F.value(), T.value()}; }
+};
+
+}  // namespace
+
+/// World::Totals of any parts, whose order has no influence; the stress is that over a volume of 1.
+struct World::ExactTotals {
+    std::size_t contacts = 0;
+    std::array<FixedSum, 9> stress = {};
+    std::vector<ExactWrench> on_boundary;
+
+    void add_stress(const Vec3& l, const Float4& F)
+    {
+        const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
+        for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t b = 0; b < 3; ++b) stress[3 * a + b] += from_j[a] * on_i[b];
+        ++contacts;
+    }
+    void put(Totals& to, double volume) const
+    {
+        to.contacts = contacts;
+        for (std::size_t k = 0; k < stress.size(); ++k) to.stress[k] = stress[k].value() / volume;
+        to.on_boundary.clear();
+        for (const ExactWrench& on : on_boundary) to.on_boundary.push_back(on.value());
+    }
+};
+
+/// Adds all contacts to the totals *to(number of the replica).
 template <class To>
 void World::add_totals(const To& to) const
 {
     update_for_query();
-    const Arrays<par::Cpu>& of = engine->arrays();
-    const Position* position = of.particle.position.data();
-    const Float4* omega = of.particle.omega.data();
-    const std::uint32_t* id = of.particle.id.data();
-    // Partial sums over fixed parts of the pairs, added in order: the result does not depend on the number of
-    // threads. Pairs are ordered by replica; a part has one sum for each replica in it.
+    // Pairs are ordered by replica; a part has one sum for each replica in it.
     struct Sum {
-        Totals* to = nullptr;
-        std::size_t contacts = 0;
-        std::array<double, 9> stress = {};
+        ExactTotals* to = nullptr;
+        ExactTotals parts;
         std::vector<ContactRecord> with_boundaries;  ///< those that load a boundary
     };
-    std::vector<std::vector<Sum>> sums(CurrentLoads::parts(of.pairs.count));
-    const auto add_stress = [](Sum& sum, const Vec3& l, const Float4& F) {
-        const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
-        for (int a = 0; a < 3; ++a)
-            for (int b = 0; b < 3; ++b) sum.stress[3 * a + b] += from_j[a] * on_i[b];
-        ++sum.contacts;
-    };
-    for_current_loads([&](std::uint32_t part, const CurrentLoads& now) {
-        std::vector<Sum> of_part;
-        for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n) {
-            if (!now.touching(n)) continue;
-            const std::uint32_t i = of.pairs.i.data()[n], j = of.pairs.j.data()[n];
-            const Float4 F = now.load[n - now.begin].F;
-            Totals* const replica = to(of.particle.species.data()[i].replica);
-            if (of_part.empty() || of_part.back().to != replica) of_part.emplace_back().to = replica;
-            Sum& sum = of_part.back();
-            if ((j & PairView::boundary_bit) == 0) {
-                add_stress(sum,
-                           separation(domain.grid, position[i], position[j]) -
-                               (offset_in_clump(id[i]) - offset_in_clump(id[j])),
-                           F);
-                const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
-                if (!attached.empty() && fixed) sum.with_boundaries.push_back(contact(now, n));
-            } else {
-                const ContactRecord c = contact(now, n);
-                add_stress(sum, (of.particle.velocity.data()[i].w - c.delta) * c.n - offset_in_clump(id[i]),
-                           F);
-                sum.with_boundaries.push_back(c);
+    engine->each_piece(true, [&](const Piece& piece) {
+        const Arrays<par::Cpu>& of = piece.arrays;
+        const Position* position = of.particle.position.data();
+        const Float4* omega = of.particle.omega.data();
+        const std::uint32_t* id = of.particle.id.data();
+        std::vector<std::vector<Sum>> sums(CurrentLoads::parts(of.pairs.count));
+        for_current_loads(of, [&](std::uint32_t part, const CurrentLoads& now) {
+            std::vector<Sum> of_part;
+            for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n) {
+                if (!now.touching(n)) continue;
+                const std::uint32_t i = of.pairs.i.data()[n], j = of.pairs.j.data()[n];
+                const Float4 F = now.load[n - now.begin].F;
+                ExactTotals* const replica = to(of.particle.species.data()[i].replica);
+                if (of_part.empty() || of_part.back().to != replica) of_part.emplace_back().to = replica;
+                Sum& sum = of_part.back();
+                if ((j & PairView::boundary_bit) == 0) {
+                    sum.parts.add_stress(separation(domain.grid, position[i], position[j]) -
+                                             (offset_in_clump(id[i]) - offset_in_clump(id[j])),
+                                         F);
+                    const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
+                    if (!attached.empty() && fixed) sum.with_boundaries.push_back(contact(now, n));
+                } else {
+                    const ContactRecord c = contact(now, n);
+                    sum.parts.add_stress(
+                        (of.particle.velocity.data()[i].w - c.delta) * c.n - offset_in_clump(id[i]), F);
+                    sum.with_boundaries.push_back(c);
+                }
             }
-        }
-        sums[part] = std::move(of_part);
+            sums[part] = std::move(of_part);
+        });
+        for (const std::vector<Sum>& of_part : sums)
+            for (const Sum& sum : of_part) {
+                sum.to->contacts += sum.parts.contacts;
+                for (std::size_t k = 0; k < 9; ++k) sum.to->stress[k] += sum.parts.stress[k];
+                for (const ContactRecord& c : sum.with_boundaries) add_wrench(sum.to->on_boundary, c);
+            }
     });
-    for (const std::vector<Sum>& of_part : sums)
-        for (const Sum& sum : of_part) {
-            sum.to->contacts += sum.contacts;
-            for (int k = 0; k < 9; ++k) sum.to->stress[k] += sum.stress[k];
-            for (const ContactRecord& c : sum.with_boundaries) add_wrench(sum.to->on_boundary, c);
-        }
 }
 
 World::Totals World::totals() const
 {
-    Totals all{.contacts = 0, .stress = {}, .on_boundary = std::vector<Wrench>(boundaries.size())};
-    add_totals([&](std::uint16_t) { return &all; });
-    for (double& part : all.stress) part /= volume();
+    ExactTotals sum{.contacts = 0, .stress = {}, .on_boundary = std::vector<ExactWrench>(boundaries.size())};
+    add_totals([&](std::uint16_t) { return &sum; });
+    Totals all;
+    sum.put(all, volume());
     return all;
 }
 
@@ -298,10 +326,10 @@ std::vector<World::ReplicaTotals> World::replica_totals() const
         }
     });
     if (inserted_count > 0) all.resize(std::max<std::size_t>(all.size(), domain.replicas));
-    for (ReplicaTotals& sum : all) sum.on_boundary.resize(boundaries.size());
-    add_totals([&](std::uint16_t replica) -> Totals* { return &all[replica]; });
-    for (ReplicaTotals& sum : all)
-        for (double& part : sum.stress) part /= volume();
+    std::vector<ExactTotals> sums(all.size());
+    for (ExactTotals& sum : sums) sum.on_boundary.resize(boundaries.size());
+    add_totals([&](std::uint16_t replica) { return &sums[replica]; });
+    for (std::size_t k = 0; k < all.size(); ++k) sums[k].put(all[k], volume());
     return all;
 }
 

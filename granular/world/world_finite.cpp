@@ -41,27 +41,7 @@ namespace {
 
 void World::check_finite() const
 {
-    const Particles<par::Cpu>& p = engine->arrays().particle;
-    for (std::uint32_t k = 0; k < p.count; ++k) {
-        const Compensation& c = p.compensation.data()[k];
-        const auto check = [&](const char* what, const Float4& x, const std::uint16_t* remainder) {
-            const Vec3 all = to_double(x) + to_double(load_bfloat16(remainder));
-            if (!granular::finite(all)) refuse_state(name_of(p.id.data()[k]) + what, time, shown(all));
-        };
-        check(": the velocity", p.velocity.data()[k], c.v);
-        check(": the angular velocity", p.omega.data()[k], c.omega);
-        if (p.orientation.size() == 0) continue;
-        const Float4 e = p.orientation.data()[k], remainder = p.orientation_compensation.data()[k];
-        if (!finite(e) || !finite(remainder))
-            refuse_state(
-                name_of(p.id.data()[k]) + ": the orientation", time,
-                shown(Float4{e.x + remainder.x, e.y + remainder.y, e.z + remainder.z, e.w + remainder.w}));
-    }
-    for (std::size_t k = 0; k < p.acc.size(); ++k)
-        if (!finite(p.acc.data()[k]) || !finite(p.alpha.data()[k]))
-            refuse_state(name_of(p.id.data()[k]) + ": the acceleration", time,
-                         shown(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
-    check_histories();
+    if (!engine->is_finite()) engine->each_piece(true, [&](const Piece& piece) { check_particles(piece); });
     check_clumps();
     for (std::size_t b = 0; b < boundaries.size(); ++b)
         for (const Vec3& v : {boundaries[b].r, boundaries[b].axis, boundaries[b].v, boundaries[b].omega,
@@ -77,9 +57,33 @@ void World::check_finite() const
         refuse_state("an energy or momentum of the watch", time, shown(x));
 }
 
-void World::check_histories() const
+void World::check_particles(const Piece& piece) const
 {
-    const Arrays<par::Cpu>& a = engine->arrays();
+    const Particles<par::Cpu>& p = piece.arrays.particle;
+    for (std::uint32_t k = 0; k < piece.particles; ++k) {
+        const Compensation& c = p.compensation.data()[k];
+        const auto check = [&](const char* what, const Float4& x, const std::uint16_t* remainder) {
+            const Vec3 all = to_double(x) + to_double(load_bfloat16(remainder));
+            if (!granular::finite(all)) refuse_state(name_of(p.id.data()[k]) + what, time, shown(all));
+        };
+        check(": the velocity", p.velocity.data()[k], c.v);
+        check(": the angular velocity", p.omega.data()[k], c.omega);
+        if (p.orientation.size() == 0) continue;
+        const Float4 e = p.orientation.data()[k], remainder = p.orientation_compensation.data()[k];
+        if (!finite(e) || !finite(remainder))
+            refuse_state(
+                name_of(p.id.data()[k]) + ": the orientation", time,
+                shown(Float4{e.x + remainder.x, e.y + remainder.y, e.z + remainder.z, e.w + remainder.w}));
+    }
+    for (std::uint32_t k = 0; p.acc.size() > 0 && k < piece.particles; ++k)
+        if (!finite(p.acc.data()[k]) || !finite(p.alpha.data()[k]))
+            refuse_state(name_of(p.id.data()[k]) + ": the acceleration", time,
+                         shown(not_finite({to_double(p.acc.data()[k]), to_double(p.alpha.data()[k])})));
+    check_histories(piece.arrays);
+}
+
+void World::check_histories(const Arrays<par::Cpu>& a) const
+{
     const Pairs<par::Cpu>& pairs = a.pairs;
     const auto check = [&](const par::Array<par::Cpu, Float4>& values, std::uint32_t n) {
         if (values.size() == 0 || finite(values.data()[n])) return;

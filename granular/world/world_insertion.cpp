@@ -428,34 +428,37 @@ void World::check_overlaps(std::uint32_t first) const
 {
     constexpr double max_overlap = 0.05;  // overlap over the smaller radius
     update_for_query();
-    const Particles<par::Cpu>& p = engine->arrays().particle;
-    const Pairs<par::Cpu>& pairs = engine->arrays().pairs;
     struct Fault {
         bool boundary = true;
         std::uint32_t i = ~std::uint32_t{0}, j = i;
         double R = 0, delta = 0;
     } found;  // the one with the lowest ids
-    for (std::uint32_t n = 0; n < pairs.count; ++n) {
-        const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
-        const double R_i = p.velocity.data()[i].w;
-        Fault f{.boundary = (j & PairView::boundary_bit) != 0, .i = p.id.data()[i]};
-        if (f.boundary) {
-            const std::uint32_t surface = j & ~PairView::boundary_bit;
-            f.j = surfaces().boundary_of(surface), f.R = R_i;
-            f.delta =
-                R_i -
-                surfaces().nearest(surface, global_position(domain.grid, p.position.data()[i]), R_i).distance;
-        } else {
-            const double R_j = p.velocity.data()[j].w;
-            f.j = p.id.data()[j], f.R = std::min(R_i, R_j);
-            f.delta = R_i + R_j - separation(domain.grid, p.position.data()[i], p.position.data()[j]).norm();
-            if (f.j < f.i) std::swap(f.i, f.j);
+    engine->each_piece(true, [&](const Piece& piece) {
+        const Particles<par::Cpu>& p = piece.arrays.particle;
+        const Pairs<par::Cpu>& pairs = piece.arrays.pairs;
+        for (std::uint32_t n = 0; n < pairs.count; ++n) {
+            const std::uint32_t i = pairs.i.data()[n], j = pairs.j.data()[n];
+            const double R_i = p.velocity.data()[i].w;
+            Fault f{.boundary = (j & PairView::boundary_bit) != 0, .i = p.id.data()[i]};
+            if (f.boundary) {
+                const std::uint32_t surface = j & ~PairView::boundary_bit;
+                f.j = surfaces().boundary_of(surface), f.R = R_i;
+                f.delta = R_i - surfaces()
+                                    .nearest(surface, global_position(domain.grid, p.position.data()[i]), R_i)
+                                    .distance;
+            } else {
+                const double R_j = p.velocity.data()[j].w;
+                f.j = p.id.data()[j], f.R = std::min(R_i, R_j);
+                f.delta =
+                    R_i + R_j - separation(domain.grid, p.position.data()[i], p.position.data()[j]).norm();
+                if (f.j < f.i) std::swap(f.i, f.j);
+            }
+            if (f.i < first && (f.boundary || f.j < first)) continue;
+            const bool too_large = f.boundary && f.delta > 0 && is_larger_than(boundaries[f.j], f.R);
+            if (!too_large && !(f.delta > max_overlap * f.R)) continue;
+            if (std::tie(f.boundary, f.i, f.j) < std::tie(found.boundary, found.i, found.j)) found = f;
         }
-        if (f.i < first && (f.boundary || f.j < first)) continue;
-        const bool too_large = f.boundary && f.delta > 0 && is_larger_than(boundaries[f.j], f.R);
-        if (!too_large && !(f.delta > max_overlap * f.R)) continue;
-        if (std::tie(f.boundary, f.i, f.j) < std::tie(found.boundary, found.i, found.j)) found = f;
-    }
+    });
     if (found.R == 0) return;
     if (found.boundary && is_larger_than(boundaries[found.j], found.R))
         refuse(name_of(found.i),

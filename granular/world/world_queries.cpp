@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Queries of a world: particles, energy, momentum, step limits, memory.
+#include "granular/backend/fixed_sum.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
@@ -9,10 +10,9 @@ namespace hilda::granular {
 
 using namespace detail;
 
-/// State of the particle with index k in the arrays
-Particle World::particle_at(std::uint32_t k) const
+/// State of the particle with index k in these arrays
+Particle World::particle_at(const Particles<par::Cpu>& in, std::uint32_t k) const
 {
-    const Particles<par::Cpu>& in = engine->arrays().particle;
     const Float4 v = in.velocity.data()[k], w = in.omega.data()[k];
     const Compensation& compensation = in.compensation.data()[k];
     const Species species = in.species.data()[k];
@@ -42,16 +42,19 @@ Particle World::particle_at(std::uint32_t k) const
 
 void World::each_particle(const std::function<void(const Particle&)>& f) const
 {
-    const std::uint32_t* const id = engine->arrays().particle.id.data();
-    std::vector<std::uint32_t> order(engine->arrays().particle.count);
-    if (next_id == order.size()) {  // none was removed
-        for (std::uint32_t k = 0; k < order.size(); ++k) order[id[k]] = k;
-    } else {
-        std::iota(order.begin(), order.end(), 0);
-        std::sort(order.begin(), order.end(),
-                  [&](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
-    }
-    for (const std::uint32_t k : order) f(particle_at(k));
+    std::vector<std::uint32_t> order;
+    engine->each_piece_by_id(next_id, [&](const Particles<par::Cpu>& in) {
+        const std::uint32_t* const id = in.id.data();
+        order.resize(in.count);
+        if (next_id == order.size()) {  // all that there ever were
+            for (std::uint32_t k = 0; k < order.size(); ++k) order[id[k]] = k;
+        } else {
+            std::iota(order.begin(), order.end(), 0);
+            std::sort(order.begin(), order.end(),
+                      [&](std::uint32_t a, std::uint32_t b) { return id[a] < id[b]; });
+        }
+        for (const std::uint32_t k : order) f(particle_at(in, k));
+    });
     for (const Particle& p : pending) {
         if (p.clump < 0) {
             f(p);
@@ -82,42 +85,92 @@ void World::Sums::add(const Particle& p, const Vec3& w, const Vec3& gravity)
     momentum += p.mass * p.v;
 }
 
-void World::Sums::add(const Sums& part)
-{
-    kinetic_energy += part.kinetic_energy, rotational_energy += part.rotational_energy;
-    potential_energy += part.potential_energy, momentum += part.momentum;
-}
+namespace {
+
+/// A sum whose terms can be added in any order; beyond the range of FixedSum one of doubles
+struct AnySum {
+    FixedSum exact;
+    double near = 0;
+
+    AnySum& operator+=(double x)
+    {
+        exact += x, near += x;
+        return *this;
+    }
+    AnySum& operator+=(const AnySum& o)
+    {
+        exact += o.exact, near += o.near;
+        return *this;
+    }
+    double value() const
+    {
+        const double x = exact.value();
+        return std::isnan(x) ? near : x;
+    }
+};
+
+/// World::Sums of any parts
+struct PartialSums {
+    AnySum kinetic_energy, rotational_energy, potential_energy, momentum[3];
+
+    PartialSums& operator+=(const World::Sums& p)
+    {
+        kinetic_energy += p.kinetic_energy, rotational_energy += p.rotational_energy;
+        potential_energy += p.potential_energy;
+        momentum[0] += p.momentum.x, momentum[1] += p.momentum.y, momentum[2] += p.momentum.z;
+        return *this;
+    }
+    PartialSums& operator+=(const PartialSums& p)
+    {
+        kinetic_energy += p.kinetic_energy, rotational_energy += p.rotational_energy;
+        potential_energy += p.potential_energy;
+        for (int k = 0; k < 3; ++k) momentum[k] += p.momentum[k];
+        return *this;
+    }
+};
+
+}  // namespace
 
 World::Sums World::sums() const
 {
     const Vec3 gravity = {options.periodic[0] ? 0 : options.gravity.x,
                           options.periodic[1] ? 0 : options.gravity.y,
                           options.periodic[2] ? 0 : options.gravity.z};
-    const std::uint32_t count = engine->arrays().particle.count;
-    constexpr std::uint32_t block = 256;
-    // Partial sums over fixed blocks: the result does not depend on the number of threads.
-    std::vector<Sums> of_block((count + block - 1) / block);
-    par::for_each(
-        par::Cpu(), of_block.size(),
-        [&](std::uint32_t number) {
-            for (std::uint32_t k = number * block; k < std::min((number + 1) * block, count); ++k)
-                if (const std::uint32_t id = engine->arrays().particle.id.data()[k], c = clump_of(id);
-                    c == no_clump) {
-                    of_block[number].add(particle_at(k), gravity);
-                } else if (const ClumpState s = clump_state(c); s.body.id == id) {
-                    of_block[number].add(s.body, s.w, gravity);
-                }
-        },
-        8);
-    Sums all;
-    for (const Sums& part : of_block) all.add(part);
+    PartialSums all;
+    const auto add = [&](PartialSums& to, const Particle& p, const Vec3& w) {
+        Sums one;
+        one.add(p, w, gravity);
+        to += one;
+    };
+    engine->each_piece(false, [&](const Piece& piece) {
+        const Particles<par::Cpu>& in = piece.arrays.particle;
+        const std::uint32_t count = piece.particles;
+        constexpr std::uint32_t block = 256;
+        std::vector<PartialSums> of_block((count + block - 1) / block);
+        par::for_each(
+            par::Cpu(), of_block.size(),
+            [&](std::uint32_t number) {
+                for (std::uint32_t k = number * block; k < std::min((number + 1) * block, count); ++k)
+                    if (const std::uint32_t id = in.id.data()[k], c = clump_of(id); c == no_clump) {
+                        const Particle p = particle_at(in, k);
+                        add(of_block[number], p, p.omega);
+                    } else if (const ClumpState s = clump_state(c); s.body.id == id) {
+                        add(of_block[number], s.body, s.w);
+                    }
+            },
+            8);
+        for (const PartialSums& part : of_block) all += part;
+    });
     for (const Particle& p : pending)
-        if (p.clump < 0) all.add(p, gravity);
+        if (p.clump < 0) add(all, p, p.omega);
     for (const Clump& c : pending_clumps) {
         const ClumpState s = clump_state(c);
-        all.add(s.body, s.w, gravity);
+        add(all, s.body, s.w);
     }
-    return all;
+    return {.kinetic_energy = all.kinetic_energy.value(),
+            .rotational_energy = all.rotational_energy.value(),
+            .potential_energy = all.potential_energy.value(),
+            .momentum = {all.momentum[0].value(), all.momentum[1].value(), all.momentum[2].value()}};
 }
 
 namespace {
@@ -183,28 +236,31 @@ World::StepLimits World::step_limits(double least_speed) const
 void World::boundary_stiffness(std::vector<double>& sum) const
 {
     update_for_query();
-    const Arrays<par::Cpu>& of = engine->arrays();
-    const Pairs<par::Cpu>& pairs = of.pairs;
     sum.assign(boundaries.size(), 0);
-    for (std::uint32_t n = 0; n < pairs.count; ++n) {
-        const std::uint32_t j = pairs.j.data()[n], surface = j & ~PairView::boundary_bit;
-        if (j == surface) continue;
-        const std::uint32_t i = pairs.i.data()[n];
-        const double R = of.particle.velocity.data()[i].w;
-        const Nearest near =
-            surfaces().nearest(surface, global_position(domain.grid, of.particle.position.data()[i]), R);
-        if (!(R > near.distance)) continue;
-        const std::uint32_t k = surfaces().boundary_of(surface);
-        const Boundary& b = boundaries[k];
-        ContactPoint<double> contact{};
-        contact.delta = R - near.distance, contact.R_i = R, contact.m_eff = 1;
-        contact.R_eff = effective_radius(b, R, near);
-        History<double> history{};
-        if (pairs.internal.size() > 0 && pairs.in_contact.data()[n] != 0)
-            history.largest_overlap = pairs.internal.data()[n].x;
-        const PairLaw& law = laws[laws.size() > 1 ? pairs.law.data()[n] : 0];
-        sum[b.body >= 0 ? static_cast<std::size_t>(b.body) : k] += normal_stiffness(law, contact, history);
-    }
+    engine->each_piece(true, [&](const Piece& piece) {
+        const Arrays<par::Cpu>& of = piece.arrays;
+        const Pairs<par::Cpu>& pairs = of.pairs;
+        for (std::uint32_t n = 0; n < pairs.count; ++n) {
+            const std::uint32_t j = pairs.j.data()[n], surface = j & ~PairView::boundary_bit;
+            if (j == surface) continue;
+            const std::uint32_t i = pairs.i.data()[n];
+            const double R = of.particle.velocity.data()[i].w;
+            const Nearest near =
+                surfaces().nearest(surface, global_position(domain.grid, of.particle.position.data()[i]), R);
+            if (!(R > near.distance)) continue;
+            const std::uint32_t k = surfaces().boundary_of(surface);
+            const Boundary& b = boundaries[k];
+            ContactPoint<double> contact{};
+            contact.delta = R - near.distance, contact.R_i = R, contact.m_eff = 1;
+            contact.R_eff = effective_radius(b, R, near);
+            History<double> history{};
+            if (pairs.internal.size() > 0 && pairs.in_contact.data()[n] != 0)
+                history.largest_overlap = pairs.internal.data()[n].x;
+            const PairLaw& law = laws[laws.size() > 1 ? pairs.law.data()[n] : 0];
+            sum[b.body >= 0 ? static_cast<std::size_t>(b.body) : k] +=
+                normal_stiffness(law, contact, history);
+        }
+    });
 }
 
 double World::contact_stiffness(int boundary, double overlap) const

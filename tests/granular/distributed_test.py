@@ -106,6 +106,36 @@ def same_bytes(runs, counts):
             runs.remove(output)
 
 
+# More particles than the first process collects as a whole, in contact with each other and with a moving plate
+MANY = {"hilda_case": 1, "domain": {"low": [-0.001, -0.001, -0.001], "high": [0.021, 0.021, 0.026]}, "step": 2e-6, "interval": 1e-4,
+        "orientation": True, "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}],
+        "laws": [{"restitution": 0.9, "mu": 0.3, "tangential": {"law": "mindlin"}, "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}}],
+        "boundaries": [{"name": "box", "type": "box", "low": [0, 0, 0], "high": [0.02, 0.02, 0.025], "open": ["+z"]}],
+        "fill": [{"type": "hcp", "low": [0, 0, 0], "high": [0.02, 0.02, 0.02], "radius": 3.6e-4, "spacing": 1, "random_v": 0.3}]}
+# Fewer particles than processes
+FEW = dict(MANY, fill=[], particles=[{"r": [0.002 * k, 0.002, 4e-4], "v": [0.5, 0, -0.1], "radius": 3.6e-4, "material": "glass"}
+                                     for k in (1, 2)])
+
+
+def pieces(runs):
+    """Frames, tables and checkpoints of particles that are collected in pieces, and of processes without particles"""
+    step = MANY["step"]
+    for name, case, parts in (("many", MANY, (60, 100, 140)), ("few", FEW, (500, 900, 1300))):
+        half, next_part, end = (("--end", f"{n * step:.12g}") for n in parts)
+        runs.case(name, **dict(case, end=parts[-1] * step))
+        runs.finish(name, "--output", "one", "--quiet", "--contacts", *end)
+        for count in (2, 4):
+            runs.on(count, name, "--output", "several", "--quiet", "--contacts", *end)
+            expect(runs.sha("several") == runs.sha("one"), f"{name}: the bytes of {count} processes")
+            runs.remove("several")
+        runs.on(2, name, "--output", "parts", "--quiet", "--contacts", *half)
+        runs.on(3, name, "--output", "parts", "--quiet", "--contacts", "--resume", *next_part)
+        runs.finish(name, "--output", "parts", "--quiet", "--contacts", "--resume", *end)
+        expect(runs.sha("parts") == runs.sha("one"), f"{name}: the bytes after continuations on 3 processes and on one")
+        for output in ("one", "parts"):
+            runs.remove(output)
+
+
 def lost_process(runs):
     """A process that is killed ends the others, and the run continues from the last checkpoint."""
     name = runs.case("killed", **dict(DAM, end=STEP * 4000))
@@ -169,11 +199,13 @@ def main():
         return
     with tempfile.TemporaryDirectory() as folder:
         runs = Processes(os.path.abspath(sys.argv[1]), folder)
-        check = sys.argv[2:] or ("refusals", "bytes", "lost")
+        check = sys.argv[2:] or ("refusals", "bytes", "pieces", "lost")
         if "refusals" in check:
             refusals(runs)
         if "bytes" in check:
             same_bytes(runs, (2, 3, 4, 8))
+        if "pieces" in check:
+            pieces(runs)
         if "lost" in check:
             lost_process(runs)
     print("ok")

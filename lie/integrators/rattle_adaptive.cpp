@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// rA-rattle-adaptive: RATTLE on the Lie group with reversible variable steps.
+///
+///     t_{n+1} = t_n + ε/ρ_{n+½},   ρ_{n+½} = ρ_{n-½} + ε G(x_n),   ρ_½ = 1 + ½ε G(x_0)
+///     G = d/dt log Q,   Q = (F_0² + F²)^(3/8),   F² = Σ |F_i|²/m_i + n̄_iᵀ J̄_i⁻¹ n̄_i
+///
+/// Hairer, Söderlind (2005), SIAM J. Sci. Comput. 26, 1838-1851. ρ, the density of the steps, follows
+/// Q/Q(x_0). A step from t_{n+1} with the opposite velocities returns to t_n with the same ρ, so that the
+/// variable steps do not cause the energy of a reversible system to drift. Steps from an error estimate, or
+/// from Q(x_n) alone, are not symmetric, and the energy drifts.
+///
+/// With loads that grow like d^-2 near a centre of attraction the steps are proportional to the time d^3/2 in
+/// which a body passes it. F_0 is F at the start of the run: where the loads become small the steps grow by
+/// at most 2^(3/8). Where all loads are constant, so is the step. G is a central difference along the present
+/// velocities, with the same distance in all steps; it is odd in the velocities, as the symmetry requires.
+///
+/// ε is the step at the start for which the local error, found from two steps of half its length, is the
+/// tolerance. The error of the motion is of order 2 in ε, and proportional to rtol^(2/3).
+///
+/// A node inside an internal step is on the cubic Hermite polynomials of r and of θ = log(A_nᵀ A) between the
+/// ends of the step, projected onto the constraints. It has no effect on the internal steps.
+
+#include "lie/check.hpp"
+#include "lie/schemes.hpp"
+#include "lie/so3.hpp"
+#include "lie/steps/rattle_step.hpp"
+#include "lie/steps/state_numbers.hpp"
+#include "lie/steps/step_control.hpp"
+#include "lie/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace hilda::lie {
+namespace {
+
+constexpr double largest_turn = 2;  // [rad] of a body in an internal step, as with the other adaptive schemes
+constexpr double distance = 1e-2;   // of the central difference, in parts of ε
+constexpr double exponent = 3. / 8;
+// Between ρ and Q/Q(x_0), in both directions. A smooth motion has 1 + O(ε²).
+constexpr double largest_lag = 2;
+
+class RattleAdaptive final : public RattleStep {
+public:
+    RattleAdaptive(const System& model, const Settings& settings)
+        : RattleStep(model, settings, "rA-rattle-adaptive"), tolerance(12 * bodies)
+    {
+        K.set_refinements(2);
+        const auto checked = [](const char* option, double value) {
+            if (!(value >= 1e-14 && value <= 0.1))
+                reject("integrator rA-rattle-adaptive", std::string(option) + " must be from 1e-14 to 0.1",
+                       value);
+            return value;
+        };
+        rtol = checked("rtol", settings.rtol);
+        atol = settings.atol > 0 ? checked("atol", settings.atol) : rtol;
+    }
+
+    bool chooses_internal_steps() const override { return true; }
+
+    int step(State& x, double h) override
+    {
+        refuse_history(x, name,
+                       "adaptive steps do not support loads with a history, such as friction; use a "
+                       "fixed step");
+        for (State* s : {&x_n, &begin, &end, &node}) copy(x, *s);
+        const auto numbers = [this](const auto& block) { transfer(block); };
+        int k = 0;
+        if (x.history.size() == 0)
+            k += start();
+        else
+            read_history(x, name, numbers);
+        const double t = x.t + h;
+        while (end.t < t) {
+            if (settings.stop != nullptr && settings.stop()) throw Interrupted();
+            k += internal_step();
+        }
+        if (t == end.t) {
+            copy(end, x);
+        } else {
+            interpolate(node, t);
+            model.accepted(begin, node);
+            copy(node, x);
+        }
+        write_history(x, numbers);
+        return k;
+    }
+
+private:
+    template <class Block>
+    void transfer(const Block& block)
+    {
+        for (double* number : {&begin.t, &end.t, &epsilon, &density, &F_0_squared}) block(number, 1);
+        lie::transfer(begin, block);
+        lie::transfer(end, block);
+    }
+
+    /// A step from x, which becomes the result
+    int take_step(State& x, double h, double t_end)
+    {
+        copy(x, x_n);
+        for (const Motion& body : x_n.body)
+            if (const double turn = h * body.omega_bar.norm(); !(turn <= largest_turn))
+                fail("a body turns by " + number(turn) + " rad in a step of " + number(h) +
+                     " s, and the limit is 2; use a smaller rtol");
+        Attempt attempt(x, x_n);
+        return done(attempt, advance(x, h, t_end));
+    }
+
+    /// The node at t between `begin` and `end`
+    void interpolate(State& x, double t)
+    {
+        copy(begin, x), copy(begin, x_n);
+        const double h = end.t - begin.t, s = (t - begin.t) / h;
+        for (std::size_t i = 0; i < x.body.size(); ++i) {
+            const Motion &a = begin.body[i], &b = end.body[i];
+            const Vec3 turn = log(a.A.transpose() * b.A),
+                       turn_rate = right_jacobian_inverse(turn) * b.omega_bar;
+            const Hermite r(b.r - a.r, h * a.rdot, h * b.rdot, s),
+                theta(turn, h * a.omega_bar, h * turn_rate, s);
+            x.body[i].r = a.r + r.value, x.body[i].rdot = r.slope / h;
+            x.body[i].A = a.A * exp(theta.value);
+            x.body[i].omega_bar = right_jacobian(theta.value) * theta.slope / h;
+        }
+        x.t = t;
+        assemble_once(x);
+        finish(x, name);
+    }
+    /// The cubic polynomial from 0 to `end`, with the slopes v and w at 0 and 1, at s, and its slope
+    struct Hermite {
+        Vec3 value, slope;
+        Hermite(const Vec3& end, const Vec3& v, const Vec3& w, double s)
+        {
+            const Vec3 c3 = v + w - 2 * end, c2 = 3 * end - 2 * v - w;
+            value = s * (v + s * (c2 + s * c3));
+            slope = v + s * (2 * c2 + 3 * s * c3);
+        }
+    };
+
+    int internal_step()
+    {
+        copy(end, begin);
+        const double G = rate(begin);
+        if (density == 0)
+            density = 1 + 0.5 * epsilon * G;
+        else
+            density += epsilon * G;
+        const double follows = density * std::pow(2 * F_0_squared / quadrature(begin), exponent);
+        if (F_0_squared > 0 && !(follows < largest_lag && follows > 1 / largest_lag))
+            fail("the loads change faster than the steps can follow: the density of the steps is " +
+                 number(follows) +
+                 " times that of the loads; use a smaller rtol, or an integrator with an "
+                 "error estimate (rA-dp-5, rA-radau-5) for contacts");
+        const double h = epsilon / density;
+        const int k = take_step(end, h, begin.t + h);
+        model.accepted(begin, end);
+        return k;
+    }
+
+    /// F_0² + F² in the state x
+    double quadrature(const State& x)
+    {
+        model.loads(x, loads);
+        double sum = F_0_squared;
+        for (int i = 0; i < bodies; ++i)
+            sum += loads.F[i].squaredNorm() / mass.m[i] +
+                   loads.n_bar[i].dot(J_bar_inverse[static_cast<std::size_t>(i)] * loads.n_bar[i]);
+        return sum;
+    }
+
+    /// G [1/s]
+    double rate(const State& x)
+    {
+        if (F_0_squared == 0) return 0;
+        const double d = distance * epsilon;
+        const double later = moved(x, d), earlier = moved(x, -d);
+        return exponent * std::log(later / earlier) / (2 * d);
+    }
+    double moved(const State& x, double d)
+    {
+        for (std::size_t i = 0; i < x.body.size(); ++i) {
+            node.body[i].r = x.body[i].r + d * x.body[i].rdot;
+            node.body[i].A = x.body[i].A * exp(d * x.body[i].omega_bar);
+            node.body[i].rdot = x.body[i].rdot, node.body[i].omega_bar = x.body[i].omega_bar;
+        }
+        node.t = x.t;
+        return quadrature(node);
+    }
+
+    /// Sets ε and F_0.
+    int start()
+    {
+        const double longest = largest_start();
+        density = 0, epsilon = 0.01 * longest;
+        set_tolerances(end, end, rtol, atol, tolerance);
+        F_0_squared = 0;
+        F_0_squared = quadrature(end);
+        constexpr int most = 60;
+        int k = 0;
+        for (int n = 0; n < most; ++n) {
+            double factor = 0.25;  // after a step that fails
+            std::string reason = "the local error of no step is below the tolerance";
+            try {
+                copy(end, begin), copy(end, node);
+                k += take_step(begin, epsilon, end.t + epsilon);
+                k += take_step(node, epsilon / 2, end.t + epsilon / 2);
+                k += take_step(node, epsilon / 2, end.t + epsilon);
+                const double error = difference(begin, node) * 4 / 3;
+                factor = std::clamp(std::cbrt(1 / std::max(error, 1e-30)), 0.1, 10.);
+            } catch (const NumericalFailure& failure) {
+                reason = failure.what();
+            }
+            if (std::abs(factor - 1) < 0.05 || (factor > 1 && epsilon == longest)) break;
+            epsilon = std::min(factor * epsilon, longest);
+            if (!(end.t + epsilon > end.t)) fail(reason);
+        }
+        // one of eight values for each factor of two, so that rounding errors have no influence
+        epsilon = std::exp2(std::round(8 * std::log2(epsilon)) / 8);
+        return k;
+    }
+    /// A body turns by about a quarter of the limit at most, with the present acceleration. At most 1 s.
+    double largest_start() const
+    {
+        double h = 1;
+        for (const Motion& body : end.body)
+            h = std::min({h, 0.25 * largest_turn / body.omega_bar.norm(),
+                          std::sqrt(0.5 * largest_turn / body.omegadot_bar.norm())});
+        return h;
+    }
+    /// Root mean square of the difference of two states over the tolerances
+    double difference(const State& a, const State& b) const
+    {
+        double sum = 0;
+        for (int i = 0; i < bodies; ++i) {
+            const Motion &p = a.body[i], &q = b.body[i];
+            Eigen::Matrix<double, 12, 1> d;
+            d << p.r - q.r, log(q.A.transpose() * p.A), p.rdot - q.rdot, p.omega_bar - q.omega_bar;
+            sum += d.cwiseQuotient(tolerance.segment<12>(12 * i)).squaredNorm();
+        }
+        return std::sqrt(sum / (12. * bodies));
+    }
+
+    static std::string number(double x)
+    {
+        std::ostringstream text;
+        text.precision(3);
+        text << x;
+        return text.str();
+    }
+    [[noreturn]] void fail(const std::string& why) const
+    {
+        std::ostringstream what;
+        what.precision(3);
+        what << name << " at t = " << end.t << " s: " << why;
+        throw NumericalFailure("step_too_large", what.str());
+    }
+
+    double rtol = 0, atol = 0;
+    State begin, end;        ///< of the last internal step
+    double epsilon = 0;      ///< [s]
+    double density = 0;      ///< ρ of that step; 0 before the first one
+    double F_0_squared = 0;  ///< 0: there are no loads, and the steps are ε
+    State node;              ///< workspace
+    Eigen::VectorXd tolerance;
+};
+
+const bool registered =
+    register_scheme<RattleAdaptive>({.name = "rA-rattle-adaptive",
+                                     .description = "RATTLE with reversible variable steps; the first one "
+                                                    "from rtol and atol, the others from the loads",
+                                     .order = 2,
+                                     .order_lambda = 2,
+                                     .formulation = "rA",
+                                     .unknowns = "r, h omega, h^2 lambda / 2",
+                                     .source = "Hairer, Söderlind (2005), with RATTLie",
+                                     .adaptive = true,
+                                     .redundant = true,
+                                     .histories = false});
+
+}  // namespace
+}  // namespace hilda::lie

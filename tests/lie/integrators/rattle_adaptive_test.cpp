@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// rA-rattle-adaptive: reversible steps, energy near a centre of attraction, order, failures.
+
+#include "lie/check.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "lie/trajectory.hpp"
+#include "tests/support/spinning_top.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using lie::State;
+using lie::Vec3;
+
+namespace {
+
+/// A top whose centre of mass is attracted by a fixed point near its path: F = k d/|d|³
+class AttractedTop final : public lie::System {
+public:
+    explicit AttractedTop(double k) : k(k) {}
+
+    const lie::Mass& mass() const override { return top.mass(); }
+    const lie::Rows& pattern() const override { return top.pattern(); }
+    void loads(const State& x, lie::Loads& out) const override
+    {
+        top.loads(x, out);
+        const Vec3 d = centre() - x.body[0].r;
+        out.F[0] += k / std::pow(d.norm(), 3) * d;
+    }
+    void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { top.phi(x, out); }
+    void variation(const State& x, lie::Rows& out) const override { top.variation(x, out); }
+    void nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { top.nu(x, out); }
+    void gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const override { top.gamma(x, out); }
+
+    /// 2 % beyond the lowest place of the centre of mass
+    Vec3 centre() const { return {0, 0, -1.02 * top.s_bar.norm()}; }
+    /// Without spin: the centre of mass swings through its lowest place.
+    State start() const
+    {
+        State x = tests::tilted_top(*this, top.s_bar);
+        x.body[0].rdot.setZero(), x.body[0].omega_bar.setZero();
+        lie::scheme("rA-rattle").make(*this, {})->step(x, 1e-9);
+        x.t = 0;
+        return x;
+    }
+    double energy(const State& x) const
+    {
+        const lie::Motion& body = x.body[0];
+        lie::Loads gravity(1);
+        top.loads(x, gravity);
+        return 0.5 * mass().m[0] * body.rdot.squaredNorm() +
+               0.5 * body.omega_bar.dot(mass().J_bar[0] * body.omega_bar) - gravity.F[0].dot(body.r) -
+               k / (centre() - body.r).norm();
+    }
+    const tests::SpinningTop top;
+
+private:
+    const double k;
+};
+
+const lie::Settings tolerance(double rtol) { return {.tolerance = 1e-13, .rtol = rtol}; }
+
+/// Largest error of the energy in a part of a run, relative to that at the start
+double largest_error(const AttractedTop& system, const std::vector<State>& rows, std::size_t from,
+                     std::size_t to)
+{
+    const double E = system.energy(rows[0]);
+    double largest = 0;
+    for (std::size_t k = from; k < to; ++k) largest = std::max(largest, std::abs(system.energy(rows[k]) - E));
+    return largest / std::abs(E);
+}
+
+}  // namespace
+
+TEST_CASE("reversible steps need fewer steps near a centre of attraction, and the energy does not drift",
+          "[lie][rattle][adaptive]")
+{
+    const AttractedTop system(0.02);
+    const auto run = [&](const lie::Scheme& s, const lie::Settings& settings, double h, long& steps) {
+        const auto integrator = s.make(system, settings);
+        const auto rows = lie::march(system.start(), *integrator, lie::TimeGrid::over(60, h)).row;
+        steps = integrator->statistics().steps;
+        return rows;
+    };
+    long steps = 0, fixed_steps = 0;
+    const auto rows = run(lie::scheme("rA-rattle-adaptive"), tolerance(1e-7), 0.01, steps);
+    const auto fixed = run(lie::scheme("rA-rattle"), {.tolerance = 1e-13}, 60. / double(steps), fixed_steps);
+    const double early = largest_error(system, rows, 0, rows.size() / 4),
+                 late = largest_error(system, rows, rows.size() * 3 / 4, rows.size()),
+                 of_fixed = largest_error(system, fixed, 0, fixed.size());
+    INFO(steps << " steps: " << early << ", " << late << "; fixed " << of_fixed);
+    CHECK(fixed_steps == Approx(steps).margin(2));
+    CHECK(late < 1.2 * early);
+    CHECK(early < of_fixed / 5);
+}
+
+TEST_CASE("reversible steps return to the start", "[lie][rattle][adaptive]")
+{
+    const AttractedTop system(0.02);
+    const auto integrator = lie::scheme("rA-rattle-adaptive").make(system, tolerance(1e-6));
+    const State start = system.start();
+    State x = start;
+    integrator->step(x, 1.3);
+    // State::history: begin and end of the last step, ε, ρ, F_0², the states at the begin and the end
+    constexpr Eigen::Index times = 5, rdot = 3, omega_bar = 18;  // places of a motion
+    const Eigen::Index length = (x.history.size() - times) / 2;
+    const double elapsed = x.history[0];
+    REQUIRE(elapsed > 1);
+    // From the begin of the last step with the opposite velocities: ρ of that step minus ε G there is the ρ
+    // of the step before.
+    x.history.segment(times + length, length) = x.history.segment(times, length);
+    for (const Eigen::Index velocity : {rdot, omega_bar})
+        x.history.segment<3>(times + length + velocity) *= -1;
+    x.history[0] = x.history[1] = x.t = 0;
+    integrator->step(x, elapsed);
+    const lie::Motion &now = x.body[0], &then = start.body[0];
+    CHECK((now.r - then.r).norm() < 1e-9);
+    CHECK((now.A - then.A).norm() < 1e-9);
+    CHECK((now.rdot + then.rdot).norm() < 1e-8);
+}
+
+TEST_CASE("the error of reversible steps is of order 2 in the first step", "[lie][rattle][adaptive][order]")
+{
+    const AttractedTop system(0.02);
+    const auto end = [&](const lie::Scheme& s, double rtol, double& epsilon) {
+        State x = system.start();
+        s.make(system, tolerance(rtol))->step(x, 0.9);
+        epsilon = x.history[2];
+        return x;
+    };
+    double epsilon[2], ignored = 0;
+    const State exact = end(lie::scheme("rA-dop853").with_adaptive_steps(), 1e-13, ignored),
+                coarse = end(lie::scheme("rA-rattle-adaptive"), 1e-8, epsilon[0]),
+                fine = end(lie::scheme("rA-rattle-adaptive"), 1e-10, epsilon[1]);
+    const auto error = [&](const State& x) {
+        return (x.body[0].r - exact.body[0].r).norm() + (x.body[0].rdot - exact.body[0].rdot).norm();
+    };
+    const double order = std::log(error(coarse) / error(fine)) / std::log(epsilon[0] / epsilon[1]);
+    INFO(error(coarse) << ", " << error(fine));
+    CHECK(order == Approx(2).margin(0.1));
+    CHECK(epsilon[0] / epsilon[1] == Approx(std::cbrt(100.)).epsilon(0.1));
+}
+
+TEST_CASE("reversible steps end where they cannot follow the loads, and with constant loads they are equal",
+          "[lie][rattle][adaptive]")
+{
+    const AttractedTop strong(5);
+    State x = strong.start();
+    const State before = x;
+    try {
+        lie::scheme("rA-rattle-adaptive").make(strong, tolerance(1e-2))->step(x, 10);
+        CHECK(false);
+    } catch (const lie::NumericalFailure& failure) {
+        INFO(failure.what());
+        CHECK_THAT(failure.what(), Catch::StartsWith("rA-rattle-adaptive at t = "));
+        CHECK_THAT(failure.what(), Catch::Contains("use a smaller rtol"));
+    }
+    CHECK(x.body[0].r == before.body[0].r);
+    CHECK(x.history.size() == 0);
+
+    const tests::SpinningTop top;
+    const auto integrator = lie::scheme("rA-rattle-adaptive").make(top, tolerance(1e-6));
+    State y = top.start();
+    integrator->step(y, 1);
+    CHECK(y.history[3] == 1);  // ρ
+    const double length = y.history[1] - y.history[0];
+    CHECK(length == Approx(y.history[2]).epsilon(1e-12));
+}

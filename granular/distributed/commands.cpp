@@ -208,7 +208,11 @@ Arrays<par::Cpu>& FirstEngine::arrays()
 }
 
 /// Most particles that are collected as a whole, and of a piece if its groups are small
-constexpr std::uint64_t most_of_piece = 1 << 14;
+static std::uint64_t most_of_piece(const Communicator& all)
+{
+    constexpr std::uint64_t of_process = 1024;
+    return of_process * static_cast<std::uint64_t>(all.size());
+}
 
 void FirstEngine::each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f)
 {
@@ -216,7 +220,8 @@ void FirstEngine::each_piece(std::uint32_t ids, bool with_pairs, const std::func
     const std::vector<std::uint64_t> particles =
         both({.call = Call::sort_into_groups, .ids = ids}, {}, [&] { return own.sort_into_groups(ids); });
     const std::uint64_t all_particles = std::accumulate(particles.begin(), particles.end(), std::uint64_t{0});
-    if (all_particles <= most_of_piece) {
+    const std::uint64_t most = most_of_piece(all);
+    if (all_particles <= most) {
         Arrays<par::Cpu>& kept = arrays();
         return f({kept, kept.particle.count});
     }
@@ -224,7 +229,7 @@ void FirstEngine::each_piece(std::uint32_t ids, bool with_pairs, const std::func
     for (std::size_t first = 0, last = 0; last < particles.size(); first = last) {
         std::uint64_t of_piece = 0;
         do of_piece += particles[last++];
-        while (last < particles.size() && of_piece + particles[last] <= most_of_piece);
+        while (last < particles.size() && of_piece + particles[last] <= most);
         if (of_piece == 0) continue;
         const std::uint32_t number =
             both({.call = Call::gather_groups, .flag = with_pairs ? 1 : 0, .first = first, .last = last}, {},
@@ -259,7 +264,7 @@ bool FirstEngine::is_finite()
 /// The copy of all arrays is no longer that of the processes.
 void FirstEngine::no_longer_whole()
 {
-    if (ranks_are_current && whole.particle.count > most_of_piece) whole = {};
+    if (ranks_are_current && whole.particle.count > most_of_piece(all)) whole = {};
     whole_is_current = false;
 }
 

@@ -114,6 +114,7 @@ private:
     template <class F>
     auto both(const Command& command, const Lists& lists, const F& f) const;
     void scatter(const Domain& domain, bool keeps_list);
+    /// `ids`: larger than all ids, for pieces in their order; 0: in the order of the cells
     void each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f);
     void no_longer_whole();
 

@@ -5,6 +5,7 @@
 #include "granular/distributed/rank_engine.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 namespace hilda::granular {
@@ -237,6 +238,7 @@ std::uint32_t RankEngine::collect(Arrays<par::Cpu>* to, const std::vector<std::u
     for (const std::uint32_t at : unknown) {
         const auto found =
             std::lower_bound(copies.begin(), copies.end(), ParticleRecord{.id = pair.j.data()[at]}, by_id);
+        if (found == copies.end()) throw std::logic_error("a partner of a contact is not known");
         pair.j.data()[at] = n + static_cast<std::uint32_t>(found - copies.begin());
     }
     return n;

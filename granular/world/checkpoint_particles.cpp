@@ -26,39 +26,25 @@ std::string shown(const Compensation& c)
     return shown(to_double(load_bfloat16(c.v))) + ", " + shown(to_double(load_bfloat16(c.omega)));
 }
 
-/// Writes the elements of a pair array that belong to contacts, as Archive::list. Only they have a history.
-template <class T>
-void write_contacts(io::Archive& a, const Pairs<par::Cpu>& pairs, std::size_t contacts,
-                    par::Array<par::Cpu, T>& values)
-{
-    a.count(contacts, sizeof(T));
-    for (std::uint32_t k = 0; contacts > 0 && k < pairs.count; ++k)
-        if (pairs.in_contact.data()[k] != 0) a.value(values.data()[k]);
-}
+/// Most particles of a block of a checkpoint
+constexpr std::size_t block_size = 4096;
 
-/// The contacts of the particles of a piece: i is the number of a particle in it, j an id, or a surface with
-/// PairView::boundary_bit.
-void write_pairs(io::Archive& a, Pairs<par::Cpu>& pairs, const std::uint32_t* id)
-{
-    std::size_t n =
-        pairs.count - std::count(pairs.in_contact.data(), pairs.in_contact.data() + pairs.count, 0);
-    write_contacts(a, pairs, n, pairs.i);
-    a.count(n, sizeof(std::uint32_t));
-    for (std::uint32_t k = 0; n > 0 && k < pairs.count; ++k)
-        if (pairs.in_contact.data()[k] != 0) {
-            std::uint32_t j = pairs.j.data()[k];
-            if ((j & PairView::boundary_bit) == 0) j = id[j];
-            a.value(j);
-        }
-    write_contacts(a, pairs, n, pairs.history);
-    write_contacts(a, pairs, pairs.rotation_history.size() > 0 ? n : 0, pairs.rotation_history);
-    write_contacts(a, pairs, pairs.internal.size() > 0 ? n : 0, pairs.internal);
-}
-
-/// Contacts as write_pairs() writes them
+/// Contacts: i is the number of a particle, j an id, or a surface with PairView::boundary_bit.
 struct SavedPairs {
     std::vector<std::uint32_t> i, j;
     std::vector<Float4> history, rotation, internal;
+
+    /// Adds the contact n of the particle `number` of a block.
+    void add(std::uint32_t number, const Pairs<par::Cpu>& pairs, std::uint32_t n, const std::uint32_t* id)
+    {
+        const std::uint32_t of = pairs.j.data()[n];
+        i.push_back(number), j.push_back((of & PairView::boundary_bit) != 0 ? of : id[of]);
+        history.push_back(pairs.history.data()[n]);
+        if (pairs.rotation_history.size() > 0) rotation.push_back(pairs.rotation_history.data()[n]);
+        if (pairs.internal.size() > 0) internal.push_back(pairs.internal.data()[n]);
+    }
+    void write(io::Archive& a) { a.list(i), a.list(j), a.list(history), a.list(rotation), a.list(internal); }
+    void clear() { i.clear(), j.clear(), history.clear(), rotation.clear(), internal.clear(); }
 
     /// Reads the contacts of the `particles` that are the last ones of `before` + particles.
     void add(io::Archive& a, std::size_t before, std::size_t particles)
@@ -100,16 +86,39 @@ struct SavedPairs {
     }
 };
 
+/// The contacts of each particle i: the numbers from start[i] to start[i + 1] - 1 of `contact`
+struct ContactsOf {
+    std::vector<std::uint32_t> start, contact;
+
+    ContactsOf(const Pairs<par::Cpu>& pairs, std::uint32_t particles) : start(particles + std::size_t{2})
+    {
+        const auto each = [&](const auto& f) {
+            for (std::uint32_t n = 0; n < pairs.count; ++n)
+                if (pairs.in_contact.data()[n] != 0) f(pairs.i.data()[n], n);
+        };
+        each([&](std::uint32_t i, std::uint32_t) { ++start[i + std::size_t{2}]; });
+        for (std::size_t k = 2; k < start.size(); ++k) start[k] += start[k - 1];
+        contact.resize(start.back());
+        each([&](std::uint32_t i, std::uint32_t n) { contact[start[i + std::size_t{1}]++] = n; });
+    }
+};
+
+/// Calls f(array of `to`, array of `from`) for each array of a particle's state.
+template <class F>
+void each_array(Particles<par::Cpu>& to, const Particles<par::Cpu>& from, const F& f)
+{
+    f(to.position, from.position), f(to.velocity, from.velocity), f(to.omega, from.omega);
+    f(to.compensation, from.compensation), f(to.species, from.species), f(to.id, from.id);
+    f(to.acc, from.acc), f(to.alpha, from.alpha), f(to.orientation, from.orientation);
+    f(to.orientation_compensation, from.orientation_compensation);
+}
+
 /// Appends the n particles of a piece to `to`, which has the length for them, from `first` on.
 void append(Particles<par::Cpu>& to, std::size_t first, const Particles<par::Cpu>& piece)
 {
-    const auto copy = [&](auto& all, const auto& values) {
+    each_array(to, piece, [&](auto& all, const auto& values) {
         std::copy(values.data(), values.data() + values.size(), all.data() + first);
-    };
-    copy(to.position, piece.position), copy(to.velocity, piece.velocity), copy(to.omega, piece.omega);
-    copy(to.compensation, piece.compensation), copy(to.species, piece.species), copy(to.id, piece.id);
-    copy(to.acc, piece.acc), copy(to.alpha, piece.alpha), copy(to.orientation, piece.orientation);
-    copy(to.orientation_compensation, piece.orientation_compensation);
+    });
 }
 
 }  // namespace
@@ -185,30 +194,51 @@ void World::transfer_particles(io::Archive& a)
     const bool has_list = std::isfinite(particle_displacement);
     std::size_t n = inserted_count;
     a.count(n, smallest);
+    const std::size_t with_acc = uses_previous_acceleration(options.scheme) ? 1 : 0,
+                      oriented = options.orientation ? 1 : 0;
+    const auto resize_all = [&](Particles<par::Cpu>& to, std::size_t length) {
+        to.resize(static_cast<std::uint32_t>(length));
+        to.acc.resize(with_acc * length), to.alpha.resize(with_acc * length);
+        to.orientation.resize(oriented * length), to.orientation_compensation.resize(oriented * length);
+    };
     if (!a.reads()) {
+        // The blocks do not depend on the pieces in which several processes send the particles.
+        Particles<par::Cpu> block;
+        resize_all(block, std::min(block_size, n));
+        std::vector<PlaceAtBuild> places;
+        SavedPairs contacts;
+        std::size_t filled = 0;
+        const auto write_block = [&] {
+            a.count(filled, smallest);
+            transfer_piece(a, block, filled);
+            for (PlaceAtBuild& place : places) a.value(place);
+            contacts.write(a);
+            filled = 0, places.clear(), contacts.clear();
+        };
         engine->each_piece(true, [&](const Piece& piece) {
-            Particles<par::Cpu>& p = piece.arrays.particle;
-            std::size_t of_piece = piece.particles;
-            if (of_piece == 0) return;
-            a.count(of_piece, smallest);
-            transfer_piece(a, p, of_piece);
-            for (std::size_t k = 0; has_list && k < of_piece; ++k) {
-                const Position& at = p.position_at_build.data()[k];
-                PlaceAtBuild place{at.x, at.y, at.z};
-                a.value(place);
+            const Particles<par::Cpu>& p = piece.arrays.particle;
+            const ContactsOf rows(piece.arrays.pairs, p.count);
+            for (std::uint32_t k = 0; k < piece.particles; ++k) {
+                each_array(block, p, [&](auto& to, const auto& from) {
+                    if (to.size() > 0) to.data()[filled] = from.data()[k];
+                });
+                if (has_list) {
+                    const Position& at = p.position_at_build.data()[k];
+                    places.push_back({at.x, at.y, at.z});
+                }
+                for (std::uint32_t n_of = rows.start[k]; n_of < rows.start[k + 1]; ++n_of)
+                    contacts.add(static_cast<std::uint32_t>(filled), piece.arrays.pairs, rows.contact[n_of],
+                                 p.id.data());
+                if (++filled == block_size) write_block();
             }
-            write_pairs(a, piece.arrays.pairs, p.id.data());
         });
+        if (filled > 0) write_block();
         return transfer_clumps(a);
     }
 
     Arrays<par::Cpu>& all = engine->arrays();
     Particles<par::Cpu>& p = all.particle;
-    const std::size_t with_acc = uses_previous_acceleration(options.scheme) ? n : 0,
-                      oriented = options.orientation ? n : 0;
-    p.resize(static_cast<std::uint32_t>(n));
-    p.acc.resize(with_acc), p.alpha.resize(with_acc);
-    p.orientation.resize(oriented), p.orientation_compensation.resize(oriented);
+    resize_all(p, n);
     std::vector<PlaceAtBuild> at_build;
     SavedPairs pairs;
     for (std::size_t before = 0, of_piece = 0; before < n; before += of_piece) {
@@ -227,6 +257,9 @@ void World::transfer_particles(io::Archive& a)
         }
         pairs.add(a, before, of_piece);
     }
+    for (const auto* list : {&pairs.rotation, &pairs.internal})
+        a.check(list->empty() || list->size() == pairs.i.size(),
+                "wrong number of pairs, got " + std::to_string(list->size()));
     p.count = static_cast<std::uint32_t>(n);
     inserted_count = n;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> index;  // of the particles, by id

@@ -106,12 +106,13 @@ def same_bytes(runs, counts):
             runs.remove(output)
 
 
-# More particles than the first process collects as a whole, in contact with each other and with a moving plate
+# Many pieces of particles in contact. All cases have more particles than the first process collects as a whole, up to 1024 for
+# each process, with 2 or 3 processes.
 MANY = {"hilda_case": 1, "domain": {"low": [-0.001, -0.001, -0.001], "high": [0.021, 0.021, 0.026]}, "step": 2e-6, "interval": 1e-4,
         "orientation": True, "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}],
         "laws": [{"restitution": 0.9, "mu": 0.3, "tangential": {"law": "mindlin"}, "rolling": {"law": "epsd", "mu_r": 0.1, "eta_r": 0.3}}],
         "boundaries": [{"name": "box", "type": "box", "low": [0, 0, 0], "high": [0.02, 0.02, 0.025], "open": ["+z"]}],
-        "fill": [{"type": "hcp", "low": [0, 0, 0], "high": [0.02, 0.02, 0.02], "radius": 3.6e-4, "spacing": 1, "random_v": 0.3}]}
+        "fill": [{"type": "hcp", "low": [0, 0, 0], "high": [0.02, 0.02, 0.015], "radius": 3.6e-4, "spacing": 1, "random_v": 0.3}]}
 # Fewer particles than processes
 FEW = dict(MANY, fill=[], particles=[{"r": [0.002 * k, 0.002, 4e-4], "v": [0.5, 0, -0.1], "radius": 3.6e-4, "material": "glass"}
                                      for k in (1, 2)])

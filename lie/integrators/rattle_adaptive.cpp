@@ -10,9 +10,10 @@
 /// from Q(x_n) alone, are not symmetric, and the energy drifts.
 ///
 /// With loads that grow like d^-2 near a centre of attraction the steps are proportional to the time d^3/2 in
-/// which a body passes it. F_0 is F at the start of the run: where the loads become small the steps grow by
-/// at most 2^(3/8). Where all loads are constant, so is the step. G is a central difference along the present
-/// velocities, with the same distance in all steps; it is odd in the velocities, as the symmetry requires.
+/// which a body passes it. F_0² is the mean of F² at x_0 and at two places before and after it on its path:
+/// where the loads become small the steps grow by a limited factor. Where all loads are constant, so is the
+/// step. G is a central difference over ±0.01 of the present step along the velocities and accelerations; it
+/// is odd in the velocities, as the symmetry requires.
 ///
 /// ε is the step at the start for which the local error, found from two steps of half its length, is the
 /// tolerance. The error of the motion is of order 2 in ε, and proportional to rtol^(2/3).
@@ -30,16 +31,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 namespace hilda::lie {
 namespace {
 
 constexpr double largest_turn = 2;  // [rad] of a body in an internal step, as with the other adaptive schemes
-constexpr double distance = 1e-2;   // of the central difference, in parts of ε
+constexpr double distance = 1e-2;   // of the central difference, in parts of the step
 constexpr double exponent = 3. / 8;
-// Between ρ and Q/Q(x_0), in both directions. A smooth motion has 1 + O(ε²).
+// Between ρ at a node, the mean of the steps before and after it, and Q/Q(x_0), in both directions. A smooth
+// motion has 1 + O(ε²).
 constexpr double largest_lag = 2;
+// A run ends if this number of internal steps covers less than a fraction of the distance of two nodes.
+constexpr long check_interval = 1000;
+constexpr double least_progress = 1e-6;
 
 class RattleAdaptive final : public RattleStep {
 public:
@@ -64,6 +70,8 @@ public:
         refuse_history(x, name,
                        "adaptive steps do not support loads with a history, such as friction; use a "
                        "fixed step");
+        if (!(h > 0))
+            reject("integrator rA-rattle-adaptive", "the distance of two nodes must be positive", h);
         for (State* s : {&x_n, &begin, &end, &node}) copy(x, *s);
         const auto numbers = [this](const auto& block) { transfer(block); };
         int k = 0;
@@ -72,9 +80,16 @@ public:
         else
             read_history(x, name, numbers);
         const double t = x.t + h;
-        while (end.t < t) {
+        double checked = end.t;
+        for (long n = 1; end.t < t; ++n) {
             if (settings.stop != nullptr && settings.stop()) throw Interrupted();
             k += internal_step();
+            if (n % check_interval != 0) continue;
+            if (end.t - checked < least_progress * h)
+                fail(
+                    "step_too_small",
+                    "1000 steps cover less than 1e-06 of the distance of two nodes; the loads are too large");
+            checked = end.t;
         }
         if (t == end.t) {
             copy(end, x);
@@ -91,7 +106,8 @@ private:
     template <class Block>
     void transfer(const Block& block)
     {
-        for (double* number : {&begin.t, &end.t, &epsilon, &density, &F_0_squared}) block(number, 1);
+        for (double* number : {&begin.t, &end.t, &epsilon, &density, &F_0_squared, &start_squared})
+            block(number, 1);
         lie::transfer(begin, block);
         lie::transfer(end, block);
     }
@@ -100,10 +116,11 @@ private:
     int take_step(State& x, double h, double t_end)
     {
         copy(x, x_n);
-        for (const Motion& body : x_n.body)
-            if (const double turn = h * body.omega_bar.norm(); !(turn <= largest_turn))
-                fail("a body turns by " + number(turn) + " rad in a step of " + number(h) +
-                     " s, and the limit is 2; use a smaller rtol");
+        for (int i = 0; i < bodies; ++i)
+            if (const double turn = h * x_n.body[i].omega_bar.norm(); !(turn <= largest_turn))
+                fail("step_too_large", model.body_name(i) + " turns by " + number(turn) +
+                                           " rad in a step of " + number(h) +
+                                           " s, and the limit is 2; use a smaller rtol");
         Attempt attempt(x, x_n);
         return done(attempt, advance(x, h, t_end));
     }
@@ -112,7 +129,9 @@ private:
     void interpolate(State& x, double t)
     {
         copy(begin, x), copy(begin, x_n);
-        const double h = end.t - begin.t, s = (t - begin.t) / h;
+        const double h = end.t - begin.t;
+        K.set_shift(shift(h));
+        const double s = (t - begin.t) / h;
         for (std::size_t i = 0; i < x.body.size(); ++i) {
             const Motion &a = begin.body[i], &b = end.body[i];
             const Vec3 turn = log(a.A.transpose() * b.A),
@@ -141,18 +160,24 @@ private:
     int internal_step()
     {
         copy(end, begin);
-        const double G = rate(begin);
-        if (density == 0)
-            density = 1 + 0.5 * epsilon * G;
-        else
-            density += epsilon * G;
-        const double follows = density * std::pow(2 * F_0_squared / quadrature(begin), exponent);
-        if (F_0_squared > 0 && !(follows < largest_lag && follows > 1 / largest_lag))
-            fail("the loads change faster than the steps can follow: the density of the steps is " +
-                 number(follows) +
-                 " times that of the loads; use a smaller rtol, or an integrator with an "
-                 "error estimate (rA-dp-5, rA-radau-5) for contacts");
+        const double present = quadrature(begin);
+        if (F_0_squared == 0 && present > 0)
+            fail("step_too_large",
+                 "loads act on a motion that was free at its start; the steps cannot follow them");
+        // Q/Q(x_0)
+        const double ratio = F_0_squared > 0 ? std::pow(present / start_squared, exponent) : 1;
+        const double G = F_0_squared > 0 ? rate(begin, distance * epsilon / ratio) : 0;
+        const double at_node = density == 0 ? 1 : density + 0.5 * epsilon * G;
+        if (const double lag = at_node / ratio; !(lag < largest_lag && lag > 1 / largest_lag))
+            fail("step_too_large",
+                 "the loads change faster than the steps can follow: the density of the steps is " +
+                     number(lag) +
+                     " times that of the loads; use a smaller rtol, or an integrator with an "
+                     "error estimate (rA-dp-5, rA-radau-5) for contacts");
+        density = density == 0 ? 1 + 0.5 * epsilon * G : density + epsilon * G;
         const double h = epsilon / density;
+        if (!(h > 0 && begin.t + h > begin.t))
+            fail("step_too_small", "a step of " + number(h) + " s has no length");
         const int k = take_step(end, h, begin.t + h);
         model.accepted(begin, end);
         return k;
@@ -169,38 +194,41 @@ private:
         return sum;
     }
 
-    /// G [1/s]
-    double rate(const State& x)
+    /// G [1/s], from a difference over ±d
+    double rate(const State& x, double d)
     {
-        if (F_0_squared == 0) return 0;
-        const double d = distance * epsilon;
         const double later = moved(x, d), earlier = moved(x, -d);
         return exponent * std::log(later / earlier) / (2 * d);
     }
+    /// F_0² + F² where x is after the time d with its accelerations
     double moved(const State& x, double d)
     {
-        for (std::size_t i = 0; i < x.body.size(); ++i) {
-            node.body[i].r = x.body[i].r + d * x.body[i].rdot;
-            node.body[i].A = x.body[i].A * exp(d * x.body[i].omega_bar);
-            node.body[i].rdot = x.body[i].rdot, node.body[i].omega_bar = x.body[i].omega_bar;
+        copy(x, node);
+        for (Motion& body : node.body) {
+            body.r += d * body.rdot;
+            body.A = body.A * exp(d * body.omega_bar);
+            body.rdot += d * body.rddot, body.omega_bar += d * body.omegadot_bar;
         }
-        node.t = x.t;
+        node.t += d;
         return quadrature(node);
     }
 
     /// Sets ε and F_0.
     int start()
     {
-        const double longest = largest_start();
+        double longest = largest_start();
+        const double smallest = 1e-12 * longest;
         density = 0, epsilon = 0.01 * longest;
         set_tolerances(end, end, rtol, atol, tolerance);
         F_0_squared = 0;
-        F_0_squared = quadrature(end);
+        const double around = 0.1 * longest;
+        F_0_squared = (quadrature(end) + moved(end, around) + moved(end, -around)) / 3;
+        start_squared = quadrature(end);
         constexpr int most = 60;
         int k = 0;
         for (int n = 0; n < most; ++n) {
             double factor = 0.25;  // after a step that fails
-            std::string reason = "the local error of no step is below the tolerance";
+            std::exception_ptr failed;
             try {
                 copy(end, begin), copy(end, node);
                 k += take_step(begin, epsilon, end.t + epsilon);
@@ -208,14 +236,19 @@ private:
                 k += take_step(node, epsilon / 2, end.t + epsilon);
                 const double error = difference(begin, node) * 4 / 3;
                 factor = std::clamp(std::cbrt(1 / std::max(error, 1e-30)), 0.1, 10.);
-            } catch (const NumericalFailure& failure) {
-                reason = failure.what();
+            } catch (const NumericalFailure&) {
+                failed = std::current_exception();
+                longest = factor * epsilon;
             }
-            if (std::abs(factor - 1) < 0.05 || (factor > 1 && epsilon == longest)) break;
+            const bool accepted = std::abs(factor - 1) < 0.05 || (factor > 1 && epsilon == longest);
+            if (accepted) break;
             epsilon = std::min(factor * epsilon, longest);
-            if (!(end.t + epsilon > end.t)) fail(reason);
+            if (epsilon > smallest && n + 1 < most) continue;
+            if (failed) std::rethrow_exception(failed);
+            fail("step_too_small", "the local error of no step is below the tolerance (rtol " + number(rtol) +
+                                       ", atol " + number(atol) + ")");
         }
-        // one of eight values for each factor of two, so that rounding errors have no influence
+        // one of eight values for each factor of two, so that rounding errors rarely have an influence
         epsilon = std::exp2(std::round(8 * std::log2(epsilon)) / 8);
         return k;
     }
@@ -248,20 +281,20 @@ private:
         text << x;
         return text.str();
     }
-    [[noreturn]] void fail(const std::string& why) const
+    [[noreturn]] void fail(const char* status, const std::string& why) const
     {
         std::ostringstream what;
         what.precision(3);
         what << name << " at t = " << end.t << " s: " << why;
-        throw NumericalFailure("step_too_large", what.str());
+        throw NumericalFailure(status, what.str());
     }
 
     double rtol = 0, atol = 0;
-    State begin, end;        ///< of the last internal step
-    double epsilon = 0;      ///< [s]
-    double density = 0;      ///< ρ of that step; 0 before the first one
-    double F_0_squared = 0;  ///< 0: there are no loads, and the steps are ε
-    State node;              ///< workspace
+    State begin, end;                           ///< of the last internal step
+    double epsilon = 0;                         ///< [s]
+    double density = 0;                         ///< ρ of that step; 0 before the first one
+    double F_0_squared = 0, start_squared = 0;  ///< 0: there are no loads, and the steps are ε
+    State node;                                 ///< workspace
     Eigen::VectorXd tolerance;
 };
 

@@ -403,8 +403,7 @@ ValidationResult run(const ValidationOptions& options)
     double parts = 0, done = 0;
     for (const TestOnBeds& t : all) parts += t.beds;
     if (options.full)
-        options.announce(
-            io::formatted("%.0f wheel tests, about 20 minutes of CPU time in the preset native", parts));
+        options.announce(io::formatted("%.0f wheel tests, more than an hour of CPU time", parts));
 
     ValidationTable table{"study",
                           {"wheel", "slip", "mu_r", "beds", "pull", "pull_deviation", "torque",

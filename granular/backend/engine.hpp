@@ -74,17 +74,16 @@ public:
     /// Calls f for all particles in pieces, which it must not change: the particles of several processes need
     /// not fit into the memory of the first one. The order is that of arrays(); without `with_pairs` it is
     /// any one, and there need not be any pairs.
-    virtual void each_piece(bool with_pairs, const std::function<void(const Piece&)>& f)
+    virtual void each_piece(bool /*with_pairs*/, const std::function<void(const Piece&)>& f)
     {
-        static_cast<void>(with_pairs);
         Arrays<par::Cpu>& all = arrays();
         f({all, all.particle.count});
     }
     /// The same without pairs, in pieces whose ids are larger than those of the pieces before. `ids`: larger
     /// than all ids
-    virtual void each_piece_by_id(std::uint32_t ids, const std::function<void(const Particles<par::Cpu>&)>& f)
+    virtual void each_piece_by_id(std::uint32_t /*ids*/,
+                                  const std::function<void(const Particles<par::Cpu>&)>& f)
     {
-        static_cast<void>(ids);
         f(arrays().particle);
     }
     /// Number of pairs in the neighbour list

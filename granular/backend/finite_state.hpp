@@ -9,15 +9,18 @@
 
 namespace hilda::granular {
 
+inline bool finite(const Float4& a)
+{
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z) && std::isfinite(a.w);
+}
+
 /// Whether the velocities, accelerations and orientations of the particles k for which is_own(k) and the
 /// histories of all contacts are finite
 template <class IsOwn>
 bool is_finite(const Particles<par::Cpu>& p, const Pairs<par::Cpu>& pairs, const IsOwn& is_own)
 {
     const auto one = [](const par::Array<par::Cpu, Float4>& values, std::uint32_t k) {
-        if (values.size() == 0) return true;
-        const Float4& x = values.data()[k];
-        return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z) && std::isfinite(x.w);
+        return values.size() == 0 || finite(values.data()[k]);
     };
     const auto vector = [](const Vec<float>& v) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

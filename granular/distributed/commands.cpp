@@ -207,12 +207,16 @@ Arrays<par::Cpu>& FirstEngine::arrays()
     return whole;
 }
 
+namespace {
+
 /// Most particles that are collected as a whole, and of a piece if its groups are small
-static std::uint64_t most_of_piece(const Communicator& all)
+std::uint64_t most_of_piece(const Communicator& all)
 {
     constexpr std::uint64_t of_process = 1024;
     return of_process * static_cast<std::uint64_t>(all.size());
 }
+
+}  // namespace
 
 void FirstEngine::each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f)
 {
@@ -262,7 +266,7 @@ bool FirstEngine::is_finite()
 }
 
 /// The copy of all arrays is no longer that of the processes.
-void FirstEngine::no_longer_whole()
+void FirstEngine::release_whole()
 {
     if (ranks_are_current && whole.particle.count > most_of_piece(all)) whole = {};
     whole_is_current = false;
@@ -337,7 +341,7 @@ void FirstEngine::set_attached(const std::vector<AttachedParticle>& particles)
 /// Each process moves its particles and its ghosts.
 void FirstEngine::move_attached(const Domain& domain, const std::vector<BoundaryPose>& poses)
 {
-    no_longer_whole();
+    release_whole();
     Lists lists;
     lists.add(poses);
     both({.call = Call::move_attached, .domain = domain}, lists, [&] { own.move_attached(domain, poses); });
@@ -362,11 +366,11 @@ void FirstEngine::find_neighbours(const Domain& domain)
             }
             return {};
         });
-    if (!lost || !scatters) no_longer_whole();
-    if (!lost) return;
-    // After a scatter there is no list yet from which the arrays could be collected.
-    if (scatters) whole_is_current = true, ranks_are_current = false;
-    throw LeftDomain{*lost};
+    if (lost && scatters)  // there is no list yet from which the arrays could be collected
+        ranks_are_current = false;
+    else
+        release_whole();
+    if (lost) throw LeftDomain{*lost};
 }
 
 std::vector<LeavingParticle> FirstEngine::outside(const Domain& domain)
@@ -394,14 +398,14 @@ void FirstEngine::prepare(const Domain& domain)
 
 void FirstEngine::find_loads(const Domain& domain, float h, bool store, double path)
 {
-    no_longer_whole();
+    release_whole();
     both({.call = Call::find_loads, .domain = domain, .h = h, .flag = store ? 1 : 0, .path = path}, {},
          [&] { own.find_loads(domain, h, store, path); });
 }
 
 float FirstEngine::advance(const StepParameters& step)
 {
-    no_longer_whole();
+    release_whole();
     return both({.call = Call::advance, .step = step}, {}, [&] { return own.advance(step); });
 }
 

@@ -116,7 +116,7 @@ private:
     void scatter(const Domain& domain, bool keeps_list);
     /// `ids`: larger than all ids, for pieces in their order; 0: in the order of the cells
     void each_piece(std::uint32_t ids, bool with_pairs, const std::function<void(const Piece&)>& f);
-    void no_longer_whole();
+    void release_whole();
 
     const Communicator& all;
     const int number;

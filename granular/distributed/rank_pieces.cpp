@@ -100,9 +100,9 @@ private:
 }  // namespace
 
 /// Collects the own particles with these indices and those that the other processes name, with their rows of
-/// the neighbour list. `is_here`: whether a particle, own or ghost, is one of them in some
-/// process; copies of the others in the rows follow the particles. Returns the number of particles without
-/// these copies, in the first process.
+/// the neighbour list. `is_here`: whether a particle, own or ghost, is one of them in some process; copies of
+/// the others in the rows follow the particles. Returns the number of particles without these copies, in the
+/// first process.
 template <class IsHere>
 std::uint32_t RankEngine::collect(Arrays<par::Cpu>* to, const std::vector<std::uint32_t>& which,
                                   const IsHere& is_here)
@@ -321,9 +321,7 @@ std::uint32_t RankEngine::collect_particles(Arrays<par::Cpu>* to, const std::vec
 std::size_t RankEngine::pair_count()
 {
     std::uint64_t pairs = 0;
-    const std::uint32_t* const start = own.pairs.start.data();
-    for (std::uint32_t k = 0; own.pairs.start.size() > 0 && k < own.particle.count; ++k)
-        if (!is_ghost(k)) pairs += start[k + 1] - start[k];
+    for (std::uint32_t n = 0; n < own.pairs.count; ++n) pairs += is_ghost(own.pairs.i.data()[n]) ? 0 : 1;
     return all.reduced(pairs);
 }
 

@@ -49,27 +49,27 @@ struct SavedPairs {
     /// Reads the contacts of the `particles` that are the last ones of `before` + particles.
     void add(io::Archive& a, std::size_t before, std::size_t particles)
     {
-        SavedPairs piece;
-        const std::size_t n = a.list(piece.i);
+        SavedPairs block;
+        const std::size_t n = a.list(block.i);
         a.check_each(
-            piece.i, "unknown particle of a pair", [&](std::uint32_t k) { return k < particles; },
+            block.i, "unknown particle of a pair", [&](std::uint32_t k) { return k < particles; },
             [](std::uint32_t k) { return std::to_string(k); });
-        for (std::uint32_t& k : piece.i) k += static_cast<std::uint32_t>(before);
+        for (std::uint32_t& k : block.i) k += static_cast<std::uint32_t>(before);
         const auto list = [&](auto& values, bool optional) {
             const std::size_t got = a.list(values);
             a.check(got == n || (optional && got == 0), "wrong number of pairs, got " + std::to_string(got));
         };
-        list(piece.j, false), list(piece.history, false);
-        check_vectors(a, piece.history, "a history");
-        list(piece.rotation, true);
-        check_vectors(a, piece.rotation, "a history");
-        list(piece.internal, true);
-        check_vectors(a, piece.internal, "a history");
+        list(block.j, false), list(block.history, false);
+        check_vectors(a, block.history, "a history");
+        list(block.rotation, true);
+        check_vectors(a, block.rotation, "a history");
+        list(block.internal, true);
+        check_vectors(a, block.internal, "a history");
         const auto append = [&](auto& to, const auto& from) {
             to.insert(to.end(), from.begin(), from.end());
         };
-        append(i, piece.i), append(j, piece.j), append(history, piece.history);
-        append(rotation, piece.rotation), append(internal, piece.internal);
+        append(i, block.i), append(j, block.j), append(history, block.history);
+        append(rotation, block.rotation), append(internal, block.internal);
     }
     /// As the pairs of a list before a neighbour search
     void put(Pairs<par::Cpu>& to) const
@@ -113,10 +113,10 @@ void each_array(Particles<par::Cpu>& to, const Particles<par::Cpu>& from, const 
     f(to.orientation_compensation, from.orientation_compensation);
 }
 
-/// Appends the n particles of a piece to `to`, which has the length for them, from `first` on.
-void append(Particles<par::Cpu>& to, std::size_t first, const Particles<par::Cpu>& piece)
+/// Appends the n particles of a block to `to`, which has the length for them, from `first` on.
+void append(Particles<par::Cpu>& to, std::size_t first, const Particles<par::Cpu>& block)
 {
-    each_array(to, piece, [&](auto& all, const auto& values) {
+    each_array(to, block, [&](auto& all, const auto& values) {
         std::copy(values.data(), values.data() + values.size(), all.data() + first);
     });
 }
@@ -128,8 +128,8 @@ struct World::PlaceAtBuild {
     std::int32_t x, y, z;
 };
 
-/// The first n particles of the arrays, without their contacts
-void World::transfer_piece(io::Archive& a, Particles<par::Cpu>& p, std::size_t n)
+/// The first n particles of the arrays as a block, without their contacts
+void World::transfer_block(io::Archive& a, Particles<par::Cpu>& p, std::size_t n)
 {
     const auto list = [&](auto& values) {
         const std::size_t got = a.list(values, n);
@@ -210,7 +210,7 @@ void World::transfer_particles(io::Archive& a)
         std::size_t filled = 0;
         const auto write_block = [&] {
             a.count(filled, smallest);
-            transfer_piece(a, block, filled);
+            transfer_block(a, block, filled);
             for (PlaceAtBuild& place : places) a.value(place);
             contacts.write(a);
             filled = 0, places.clear(), contacts.clear();
@@ -241,21 +241,21 @@ void World::transfer_particles(io::Archive& a)
     resize_all(p, n);
     std::vector<PlaceAtBuild> at_build;
     SavedPairs pairs;
-    for (std::size_t before = 0, of_piece = 0; before < n; before += of_piece) {
-        a.count(of_piece, smallest);
-        a.check(of_piece > 0 && of_piece <= n - before,
-                "invalid number of particles, got " + std::to_string(of_piece));
-        Particles<par::Cpu> piece;
-        transfer_piece(a, piece, of_piece);
-        append(p, before, piece);
-        for (std::size_t k = 0; has_list && k < of_piece; ++k) {
+    for (std::size_t before = 0, of_block = 0; before < n; before += of_block) {
+        a.count(of_block, smallest);
+        a.check(of_block > 0 && of_block <= n - before,
+                "invalid number of particles, got " + std::to_string(of_block));
+        Particles<par::Cpu> block;
+        transfer_block(a, block, of_block);
+        append(p, before, block);
+        for (std::size_t k = 0; has_list && k < of_block; ++k) {
             PlaceAtBuild& place = at_build.emplace_back();
             a.value(place);
-            if (!is_near_domain(domain.grid, {piece.position.data()[k].cell, place.x, place.y, place.z}))
-                a.check(false, "invalid position of " + name_of(piece.id.data()[k]) + ", got " +
+            if (!is_near_domain(domain.grid, {block.position.data()[k].cell, place.x, place.y, place.z}))
+                a.check(false, "invalid position of " + name_of(block.id.data()[k]) + ", got " +
                                    shown(Vec3{double(place.x), double(place.y), double(place.z)}));
         }
-        pairs.add(a, before, of_piece);
+        pairs.add(a, before, of_block);
     }
     for (const auto* list : {&pairs.rotation, &pairs.internal})
         a.check(list->empty() || list->size() == pairs.i.size(),

@@ -3,11 +3,11 @@
 
 #pragma once
 
+#include "granular/backend/finite_state.hpp"
 #include "granular/core/boundary.hpp"
 #include "granular/core/particles.hpp"
 #include "io/json.hpp"
 
-#include <cmath>
 #include <string>
 
 namespace hilda::granular::detail {
@@ -33,10 +33,7 @@ template <class Archive, class Array>
 void check_vectors(const Archive& a, const Array& list, const char* what)
 {
     a.check_each(
-        list, std::string(what) + " must be finite",
-        [](const Float4& x) {
-            return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z) && std::isfinite(x.w);
-        },
+        list, std::string(what) + " must be finite", [](const Float4& x) { return finite(x); },
         [](const Float4& x) { return shown(x); });
 }
 

@@ -365,8 +365,7 @@ public:
     }
     /// Number of particles, pending ones included
     std::size_t count() const { return inserted_count + pending.size(); }
-    /// Number of pairs in the neighbour list
-    std::size_t candidates() const { return engine->pair_count(); }
+    std::size_t candidates() const { return engine->pair_count(); }  ///< pairs in the neighbour list
     /// Number of times the neighbour list was built
     long rebuilds() const { return rebuild_count; }
     /// Wall time spent in the parts of the steps since the last call [s]
@@ -417,7 +416,7 @@ private:
     struct PlaceAtBuild;
     void transfer(io::Archive& a);
     void transfer_particles(io::Archive& a);
-    void transfer_piece(io::Archive& a, Particles<par::Cpu>& p, std::size_t n);
+    void transfer_block(io::Archive& a, Particles<par::Cpu>& p, std::size_t n);
     void restore_neighbours(const std::string& file, std::vector<PlaceAtBuild> at_build);
     struct CellPosition {
         Position position;

@@ -39,10 +39,6 @@ inline double not_finite(std::initializer_list<Vec3> all)
 }
 
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
-inline bool finite(const Float4& a)
-{
-    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z) && std::isfinite(a.w);
-}
 /// The first number of the record that is not finite; 0 if all are
 double not_finite(const WatchRecord& record);
 /// The cell exists, and along each axis the position is less than a cell away from it: it was inside when the

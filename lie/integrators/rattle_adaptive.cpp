@@ -37,30 +37,19 @@
 namespace hilda::lie {
 namespace {
 
-constexpr double largest_turn = 2;  // [rad] of a body in an internal step, as with the other adaptive schemes
-constexpr double distance = 1e-2;   // of the central difference, in parts of the step
+constexpr double distance = 1e-2;  // of the central difference, in parts of the step
 constexpr double exponent = 3. / 8;
 // Between ρ at a node, the mean of the steps before and after it, and Q/Q(x_0), in both directions. A smooth
 // motion has 1 + O(ε²).
 constexpr double largest_lag = 2;
-// A run ends if this number of internal steps covers less than a fraction of the distance of two nodes.
-constexpr long check_interval = 1000;
-constexpr double least_progress = 1e-6;
 
 class RattleAdaptive final : public RattleStep {
 public:
     RattleAdaptive(const System& model, const Settings& settings)
-        : RattleStep(model, settings, "rA-rattle-adaptive"), tolerance(12 * bodies)
+        : RattleStep(model, settings, "rA-rattle-adaptive"), allowed(settings, name), change(12 * bodies),
+          tolerance(12 * bodies)
     {
         K.set_refinements(2);
-        const auto checked = [](const char* option, double value) {
-            if (!(value >= 1e-14 && value <= 0.1))
-                reject("integrator rA-rattle-adaptive", std::string(option) + " must be from 1e-14 to 0.1",
-                       value);
-            return value;
-        };
-        rtol = checked("rtol", settings.rtol);
-        atol = settings.atol > 0 ? checked("atol", settings.atol) : rtol;
     }
 
     bool chooses_internal_steps() const override { return true; }
@@ -70,8 +59,7 @@ public:
         refuse_history(x, name,
                        "adaptive steps do not support loads with a history, such as friction; use a "
                        "fixed step");
-        if (!(h > 0))
-            reject("integrator rA-rattle-adaptive", "the distance of two nodes must be positive", h);
+        if (!(h > 0)) reject("integrator " + name, "the distance of two nodes must be positive", h);
         for (State* s : {&x_n, &begin, &end, &node}) copy(x, *s);
         const auto numbers = [this](const auto& block) { transfer(block); };
         int k = 0;
@@ -80,16 +68,14 @@ public:
         else
             read_history(x, name, numbers);
         const double t = x.t + h;
-        double checked = end.t;
-        for (long n = 1; end.t < t; ++n) {
+        Progress progress(end.t, h);
+        while (end.t < t) {
             if (settings.stop != nullptr && settings.stop()) throw Interrupted();
             k += internal_step();
-            if (n % check_interval != 0) continue;
-            if (end.t - checked < least_progress * h)
+            if (progress.has_stalled(end.t))
                 fail(
                     "step_too_small",
                     "1000 steps cover less than 1e-06 of the distance of two nodes; the loads are too large");
-            checked = end.t;
         }
         if (t == end.t) {
             copy(end, x);
@@ -117,7 +103,7 @@ private:
     {
         copy(x, x_n);
         for (int i = 0; i < bodies; ++i)
-            if (const double turn = h * x_n.body[i].omega_bar.norm(); !(turn <= largest_turn))
+            if (const double turn = h * x_n.body[i].omega_bar.norm(); !(turn <= largest_internal_turn))
                 fail("step_too_large", model.body_name(i) + " turns by " + number(turn) +
                                            " rad in a step of " + number(h) +
                                            " s, and the limit is 2; use a smaller rtol");
@@ -160,7 +146,7 @@ private:
     int internal_step()
     {
         copy(end, begin);
-        const double present = quadrature(begin);
+        const double present = squared_loads(begin);
         if (F_0_squared == 0 && present > 0)
             fail("step_too_large",
                  "loads act on a motion that was free at its start; the steps cannot follow them");
@@ -184,7 +170,7 @@ private:
     }
 
     /// F_0² + F² in the state x
-    double quadrature(const State& x)
+    double squared_loads(const State& x)
     {
         model.loads(x, loads);
         double sum = F_0_squared;
@@ -210,7 +196,7 @@ private:
             body.rdot += d * body.rddot, body.omega_bar += d * body.omegadot_bar;
         }
         node.t += d;
-        return quadrature(node);
+        return squared_loads(node);
     }
 
     /// Sets ε and F_0.
@@ -219,11 +205,11 @@ private:
         double longest = largest_start();
         const double smallest = 1e-12 * longest;
         density = 0, epsilon = 0.01 * longest;
-        set_tolerances(end, end, rtol, atol, tolerance);
+        set_tolerances(end, end, allowed.rtol, allowed.atol, tolerance);
         F_0_squared = 0;
         const double around = 0.1 * longest;
-        F_0_squared = (quadrature(end) + moved(end, around) + moved(end, -around)) / 3;
-        start_squared = quadrature(end);
+        F_0_squared = (squared_loads(end) + moved(end, around) + moved(end, -around)) / 3;
+        start_squared = squared_loads(end);
         constexpr int most = 60;
         int k = 0;
         for (int n = 0; n < most; ++n) {
@@ -245,8 +231,8 @@ private:
             epsilon = std::min(factor * epsilon, longest);
             if (epsilon > smallest && n + 1 < most) continue;
             if (failed) std::rethrow_exception(failed);
-            fail("step_too_small", "the local error of no step is below the tolerance (rtol " + number(rtol) +
-                                       ", atol " + number(atol) + ")");
+            fail("step_too_small", "the local error of no step is below the tolerance (rtol " +
+                                       number(allowed.rtol) + ", atol " + number(allowed.atol) + ")");
         }
         // one of eight values for each factor of two, so that rounding errors rarely have an influence
         epsilon = std::exp2(std::round(8 * std::log2(epsilon)) / 8);
@@ -257,21 +243,19 @@ private:
     {
         double h = 1;
         for (const Motion& body : end.body)
-            h = std::min({h, 0.25 * largest_turn / body.omega_bar.norm(),
-                          std::sqrt(0.5 * largest_turn / body.omegadot_bar.norm())});
+            h = std::min({h, 0.25 * largest_internal_turn / body.omega_bar.norm(),
+                          std::sqrt(0.5 * largest_internal_turn / body.omegadot_bar.norm())});
         return h;
     }
     /// Root mean square of the difference of two states over the tolerances
-    double difference(const State& a, const State& b) const
+    double difference(const State& a, const State& b)
     {
-        double sum = 0;
         for (int i = 0; i < bodies; ++i) {
             const Motion &p = a.body[i], &q = b.body[i];
-            Eigen::Matrix<double, 12, 1> d;
-            d << p.r - q.r, log(q.A.transpose() * p.A), p.rdot - q.rdot, p.omega_bar - q.omega_bar;
-            sum += d.cwiseQuotient(tolerance.segment<12>(12 * i)).squaredNorm();
+            change.segment<12>(12 * i) << p.r - q.r, log(q.A.transpose() * p.A), p.rdot - q.rdot,
+                p.omega_bar - q.omega_bar;
         }
-        return std::sqrt(sum / (12. * bodies));
+        return rms_over(tolerance, change);
     }
 
     static std::string number(double x)
@@ -289,13 +273,13 @@ private:
         throw NumericalFailure(status, what.str());
     }
 
-    double rtol = 0, atol = 0;
+    const Tolerances allowed;
     State begin, end;                           ///< of the last internal step
     double epsilon = 0;                         ///< [s]
     double density = 0;                         ///< ρ of that step; 0 before the first one
     double F_0_squared = 0, start_squared = 0;  ///< 0: there are no loads, and the steps are ε
     State node;                                 ///< workspace
-    Eigen::VectorXd tolerance;
+    Eigen::VectorXd change, tolerance;
 };
 
 const bool registered =

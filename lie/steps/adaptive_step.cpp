@@ -14,26 +14,15 @@ namespace hilda::lie {
 
 namespace {
 
-// A run ends if this number of internal steps covers less than a fraction of the distance of two nodes.
-constexpr long check_interval = 1000;
-constexpr double least_progress = 1e-6;
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-double checked(const std::string& scheme, const char* name, double tolerance)
-{
-    if (!(tolerance >= 1e-14 && tolerance <= 0.1))
-        reject("integrator " + scheme, std::string(name) + " must be from 1e-14 to 0.1", tolerance);
-    return tolerance;
-}
 
 }  // namespace
 
 template <class Method>
 void AdaptiveStep<Method>::set_tolerance_limits()
 {
-    rtol = checked(scheme_name(), "rtol", settings.rtol);
-    atol = settings.atol > 0 ? checked(scheme_name(), "atol", settings.atol) : rtol;
+    const Tolerances checked(settings, scheme_name());
+    rtol = checked.rtol, atol = checked.atol;
     for (Eigen::VectorXd* v : {&tolerance, &change, &rate, &next_rate}) v->setZero(12 * bodies);
 }
 
@@ -51,13 +40,11 @@ int AdaptiveStep<Method>::step(State& x, double h)
         read_history(x, scheme_name(), numbers);
     const double t = x.t + h;
     int iterations = 0;
-    double checked = end.t;
-    for (long n = 1; end.t < t; ++n) {
+    Progress progress(end.t, h);
+    while (end.t < t) {
         if (settings.stop != nullptr && settings.stop()) throw Interrupted();
         iterations += internal_step(h);
-        if (n % check_interval != 0) continue;
-        if (end.t - checked < least_progress * h) fail(length, control.last_error);
-        checked = end.t;
+        if (progress.has_stalled(end.t)) fail(length, control.last_error);
     }
     set_node(x, t);
     write_history(x, numbers);
@@ -89,7 +76,7 @@ void AdaptiveStep<Method>::start(const State& x)
         const Motion& body = x.body[i];
         change.segment<12>(12 * i) << body.r, Vec3::Zero(), body.rdot, body.omega_bar;
     }
-    const FirstStep first{rms(change), rms(rate)};
+    const FirstStep first{rms_over(tolerance, change), rms_over(tolerance, rate)};
     const double euler = std::min(first.euler(), limit());
     change = euler * rate;
     place(node, change);
@@ -99,7 +86,7 @@ void AdaptiveStep<Method>::start(const State& x)
         set_accelerations(node);
         set_slope(node, next_rate);
         change = (next_rate - rate) / euler;
-        control.h = first.of_order(this->control_order(), rms(change));
+        control.h = first.of_order(this->control_order(), rms_over(tolerance, change));
     } catch (const NumericalFailure&) {
         control.h = 0.01 * euler;
     }
@@ -178,10 +165,9 @@ void AdaptiveStep<Method>::set_node(State& x, double t)
 template <class Method>
 double AdaptiveStep<Method>::limit() const
 {
-    constexpr double largest_turn = 2;  // [rad]; J_r is singular at 2π
     double fastest = 0;
     for (const Motion& body : x_n.body) fastest = std::max(fastest, body.omega_bar.squaredNorm());
-    return largest_turn / std::sqrt(fastest);
+    return largest_internal_turn / std::sqrt(fastest);
 }
 
 template <class Method>
@@ -191,7 +177,7 @@ void AdaptiveStep<Method>::fail(double h, double norm) const
     what.precision(3);
     what << scheme_name() << " at t = " << x_n.t << " s: ";
     if (norm <= 1)
-        what << check_interval << " steps cover less than " << least_progress
+        what << Progress::interval << " steps cover less than " << Progress::least
              << " of the distance of two nodes; ";
     if (!status.empty())
         what << "a step of " << h << " s fails: " << reason;
@@ -202,12 +188,6 @@ void AdaptiveStep<Method>::fail(double h, double norm) const
              << rtol << ", atol " << atol
              << "); use larger tolerances, or check the loads for discontinuities";
     throw NumericalFailure(status.empty() ? "step_too_small" : status, what.str());
-}
-
-template <class Method>
-double AdaptiveStep<Method>::rms(const Eigen::VectorXd& of) const
-{
-    return std::sqrt(of.cwiseQuotient(tolerance).squaredNorm() / static_cast<double>(of.size()));
 }
 
 template class AdaptiveStep<RungeKuttaStep>;

@@ -63,7 +63,6 @@ private:
     /// Calls block(numbers, count) for the numbers that continue the steps.
     template <class Block>
     void transfer(const Block& block);
-    double rms(const Eigen::VectorXd& of) const;
 
     double rtol = 0, atol = 0;
     State end;          ///< of the last internal step, which starts at x_n

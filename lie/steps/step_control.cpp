@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/steps/step_control.hpp"
 
+#include "lie/check.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,19 @@ namespace {
 
 constexpr double safety = 0.8, most_growth = 5, least_growth = 0.2, least_error = 1e-4;
 
+double checked(const std::string& scheme, const char* name, double tolerance)
+{
+    if (!(tolerance >= 1e-14 && tolerance <= 0.1))
+        reject("integrator " + scheme, std::string(name) + " must be from 1e-14 to 0.1", tolerance);
+    return tolerance;
+}
+
 }  // namespace
+
+Tolerances::Tolerances(const Settings& settings, const std::string& scheme)
+    : rtol(checked(scheme, "rtol", settings.rtol)),
+      atol(settings.atol > 0 ? checked(scheme, "atol", settings.atol) : rtol)
+{}
 
 void StepControl::accept(double step, double error, int q)
 {
@@ -39,6 +53,11 @@ void set_tolerances(const State& from, const State& to, double rtol, double atol
         body.segment<3>(6).setConstant(of(a.rdot, b.rdot));
         body.tail<3>().setConstant(of(a.omega_bar, b.omega_bar));
     }
+}
+
+double rms_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error)
+{
+    return std::sqrt(error.cwiseQuotient(tolerance).squaredNorm() / static_cast<double>(error.size()));
 }
 
 double FirstStep::euler() const

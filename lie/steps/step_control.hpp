@@ -3,9 +3,43 @@
 
 #pragma once
 
+#include "lie/settings.hpp"
 #include "lie/state.hpp"
 
+#include <string>
+
 namespace hilda::lie {
+
+constexpr double largest_internal_turn = 2;  ///< of a body in an internal step [rad]; J_r is singular at 2π
+
+/// Whether internal steps make progress: a number of them has to cover a fraction of the distance h of two
+/// nodes.
+class Progress {
+public:
+    static constexpr long interval = 1000;
+    static constexpr double least = 1e-6;
+
+    Progress(double t, double h) : checked(t), h(h) {}
+    /// To be called after each internal step, with the time of its end
+    bool has_stalled(double t)
+    {
+        if (++steps % interval != 0) return false;
+        const double covered = t - checked;
+        checked = t;
+        return covered < least * h;
+    }
+
+private:
+    double checked, h;
+    long steps = 0;
+};
+
+/// Of the local error, for adaptive steps
+struct Tolerances {
+    double rtol, atol;
+    /// Those of the settings; without atol it is rtol. Throws InvalidInput if one is not in [1e-14, 0.1].
+    Tolerances(const Settings& settings, const std::string& scheme);
+};
 
 /// A PI controller: Gustafsson (1991), ACM TOMS 17, 533-554; Hairer, Wanner (1996), Solving Ordinary
 /// Differential Equations II, Sec. IV.2.
@@ -29,6 +63,8 @@ struct StepControl {
 ///
 /// A rotation of the global frame does not change the tolerances.
 void set_tolerances(const State& from, const State& to, double rtol, double atol, Eigen::VectorXd& out);
+/// Root mean square of an error of (r, θ, ṙ, ω̄) over these tolerances
+double rms_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error);
 
 /// First step [s] from the sizes of y, ẏ and ÿ, relative to the tolerances. Hairer et al. (1993), Sec. II.4
 struct FirstStep {

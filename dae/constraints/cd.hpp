@@ -38,8 +38,10 @@ public:
 
     double gamma(const Arguments& x) const override
     {
-        const BodyFixedVector s_i(x.bi, s_bar_i), s_j(x.bj, s_bar_j);
-        return f.fddot(x.t) - c.dot(s_j.centripetal - s_i.centripetal);
+        const auto centripetal = [this](const Motion& body, const Vec3& s_bar) {  // c . A (w x (w x s_bar))
+            return in_body(body).dot(body.omega_bar.cross(body.omega_bar.cross(s_bar)));
+        };
+        return f.fddot(x.t) - (centripetal(x.bj, s_bar_j) - centripetal(x.bi, s_bar_i));
     }
 
     Mat12 second_variation(const Arguments& x) const override

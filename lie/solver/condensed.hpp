@@ -9,14 +9,20 @@
 ///
 /// If rows may be dependent, S + ε D with D = diag(S) is factored. It is positive definite for all rows.
 ///
-/// Consecutive rows between the same bodies form a group. S has a block for each pair of groups that share a
-/// body. Its Cholesky factor is computed by blocks, in an order that AMD (SuiteSparse) determines once from
-/// the pattern. A chain or a tree of joints has no fill-in.
+/// Up to four consecutive rows between the same bodies form a group. S has a block for each pair of groups
+/// that share a body. S = L E Lᵀ (Cholesky without square roots) is computed by blocks. The order of
+/// elimination has the fill-in of AMD (SuiteSparse), and of all such orders an elimination tree of least
+/// height (Jess and Kees 1982). A chain or a tree of joints has no fill-in.
+///
+/// A block with the rows of a group is stored by columns of four numbers, of which the last are zero if the
+/// group has fewer rows. All operations are multiplications of such columns by a number.
 
 #pragma once
 
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
+
+#include <array>
 
 namespace hilda::lie {
 
@@ -25,7 +31,7 @@ public:
     /// Analyses the pattern. For the metric `unit` of Saddle, `mass` is the identity.
     Condensed(const Mass& mass, const Rows& pattern);
 
-    /// Factors S of these rows. Returns false if the smallest pivot is below 1e-11 of its diagonal entry, or
+    /// Factors S of these rows. Returns false if the smallest pivot is below 1e-8 of its diagonal entry, or
     /// not finite: the rows are nearly dependent or not finite. If `shift` = ε is positive, factors S + ε D,
     /// with D = 1 for rows that are zero. Returns false then only if a number is not finite or too large.
     bool factor(const Rows& C, double shift = 0);
@@ -37,38 +43,48 @@ public:
 
     /// The smallest ratio of a pivot to its diagonal entry of S
     double smallest_pivot() const { return smallest; }
-    /// Number of multiplications of one factorisation, including the assembly of S
-    double operations() const { return flops; }
+    /// Number of multiplications of a column of four numbers in one factorisation, including the assembly
+    /// of S
+    double operations() const { return products; }
     /// Number of off-diagonal blocks of the factor that are not blocks of S
     long fill_in() const { return fill; }
 
 private:
+    static constexpr int most_rows = 4;                 ///< of a group
+    using Column = Eigen::Array<double, most_rows, 1>;  ///< one number for each row of a group
+
     /// Rows first … first + rows - 1, all with entries for the same bodies in the same order
     struct Group {
         int first = 0, rows = 0, bodies = 0;
-        int body = 0;      ///< index of its first body in `body_of`
-        int w = 0;         ///< index of its part of W: for each body 6 columns of `rows` numbers
-        int diagonal = 0;  ///< index of its diagonal block in `value`
+        int body = 0;                 ///< index of its first body in `body_of`
+        int w = 0;                    ///< its first column in W: six for each body
+        int diagonal = 0;             ///< first column of its diagonal block in `value`
+        bool has_translation = true;  ///< whether rows depend on r of a body
     };
-    /// An off-diagonal block of S and its factor: the rows of group `of`, at index `at` of `value`
+    /// An off-diagonal block of S and its factor: the rows of group `of`, from column `at` of `value` on
     struct Block {
         int of = 0, at = 0;
     };
-    /// Contribution of one body to a block of S: the product of the parts of W of two groups
+    /// Contribution of one body to a block of S: the product of the parts of W of two groups. `component`
+    /// is that of r on which a row of the second group depends, if there is only one for each row.
     struct Term {
-        int of, by, w_of, w_by, at;
+        int kernel, w_of, w_by, at;
+        std::array<int, most_rows> component;
     };
     /// Elimination of a column: the product of two of its blocks is subtracted from block `to`
     struct Update {
-        int of, by, at_of, at_by, to;
+        int by, of, at_by, to;  ///< of: first column of the first block, divided by the pivots, in `divided`
     };
 
     void shift_diagonal(double shift);  ///< S ← S + shift D
-    void solve_multipliers();           ///< y ← S⁻¹ y
+    void take_right_side(const Eigen::VectorXd& b);
+    void solve_multipliers();               ///< y ← S⁻¹ y
     void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (L⁻¹ f - Wᵀ y), λ = y; b holds L⁻¹ f on entry
 
     void find_groups(const Rows& pattern);
     void analyse(const Rows& pattern);
+    Term term_of(const Rows& pattern, int g, int s, int h, int t) const;
+    void set_w(const Rows& C);
 
     std::vector<double> by_sqrt_m;  ///< 1/√m of each body
     std::vector<Mat3> L_inverse;    ///< L⁻¹ of J̄ = L Lᵀ
@@ -79,10 +95,13 @@ private:
     std::vector<int> column, update_start;  ///< first index into `block` and `update`, by position in `order`
     std::vector<Block> block;
     std::vector<Update> update;
-    std::vector<int> regularised_at;  ///< index of the diagonal entry of each regularised row in `value`
-    std::vector<double> W, value, diagonal;  ///< diagonal: of S, the reference of the pivots
-    Eigen::VectorXd y;
-    double smallest = 1, flops = 0;
+    /// The column of `value` and the number in it of the diagonal entry of each regularised row
+    std::vector<std::pair<int, int>> regularised_at;
+    std::vector<Column> W, value;
+    std::vector<Column> divided;   ///< the blocks of the present column, divided by the pivots
+    std::vector<Column> diagonal;  ///< of S, by group: the reference of the pivots
+    std::vector<Column> y;         ///< right side and multipliers by group
+    double smallest = 1, products = 0;
     long fill = 0;
 };
 

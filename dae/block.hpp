@@ -4,8 +4,10 @@
 #pragma once
 
 #include "dae/constraint.hpp"
+#include "dae/constraints/point_rows.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace hilda::dae {
@@ -45,6 +47,10 @@ public:
     /// The function of time f(t) that the row prescribes; nullptr if there is none. The load -λ of the row
     /// and ḟ are conjugate: their product is the power of the driver on the bodies.
     virtual const Driver* prescribed() const { return nullptr; }
+
+    /// For a row that keeps a coordinate of two points at a constant difference: the model evaluates such
+    /// rows together.
+    virtual std::optional<PointRow> point_row() const { return {}; }
 
     /// Sparsity pattern of the first variation: bits 0 to 5 for (r_i, pi_i), bits 6 to 11 for (r_j, pi_j). A
     /// bit is clear if the derivative is zero in every state.

@@ -69,7 +69,7 @@ void Model::constrain(const std::string& name, Blocks rows)
                        .branch = -1,
                        .constraint = constraints(),
                        .number = ++number});
-        if (general_constraint.empty()) add_to_pattern(row.back());
+        if (general_constraint.empty()) add_to_pattern(static_cast<int>(row.size()) - 1);
     }
     if (!general_constraint.empty()) set_pattern();  // the rows of general constraints remain the last ones
     constraint_names.push_back(name);
@@ -269,7 +269,8 @@ std::string Model::row_name(int k) const
 void Model::set_pattern()
 {
     rows_pattern = {};
-    for (const int k : active) add_to_pattern(row[k]);
+    point_rows.clear(), single_rows.clear();
+    for (const int k : active) add_to_pattern(k);
     int alphas = 0;
     for (const auto& c : general_constraint) {
         c->first_row = rows_pattern.rows();
@@ -305,9 +306,15 @@ void Model::add_to_pattern(const Constraint& c, int first, int rows)
     }
 }
 
-void Model::add_to_pattern(const Row& r)
+void Model::add_to_pattern(int k)
 {
+    const Row& r = row[k];
     const Block& block = *r.block;
+    const int number = rows_pattern.rows(), entry = static_cast<int>(rows_pattern.entry.size());
+    if (const std::optional<PointRow> point = block.point_row(); !point)
+        single_rows.push_back({k, number, entry});
+    else if (point_rows.empty() || !point_rows.back().add(*point, number))
+        point_rows.emplace_back(*point, number, entry);
     const unsigned nonzero = block.nonzero() | (r.complement ? r.complement->nonzero() : 0);
     if (block.i != ground)
         rows_pattern.entry.push_back(

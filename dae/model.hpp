@@ -219,7 +219,7 @@ private:
     void swap_drivers(State& x) const;
     void update_constraint_states(State& x, bool start) const;
     void set_pattern();
-    void add_to_pattern(const Row& row);
+    void add_to_pattern(int row);
     void add_to_pattern(const Constraint& c, int first, int rows);
     std::string name_of(const Constraint& c, int k) const;  ///< name of its row k
 
@@ -228,6 +228,12 @@ private:
     std::unordered_set<std::string> used_names;  ///< names of all constraints
     std::vector<Row> row;
     std::vector<int> active, dropped;  ///< ascending
+    /// The active rows: those evaluated together, and the others
+    std::vector<PointRows> point_rows;
+    struct SingleRow {
+        int row, number, entry;  ///< index in `row`, number in the equations, first entry
+    };
+    std::vector<SingleRow> single_rows;
     std::vector<std::unique_ptr<Constraint>> general_constraint;
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;

@@ -60,10 +60,10 @@ void Model::loads(const State& x, lie::Loads& out) const
 
 void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
-    Eigen::Index n = 0;
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
-        out[n++] = block.phi(arguments(block, x));
+    for (const PointRows& rows : point_rows) rows.phi(x, out.data() + rows.first);
+    for (const SingleRow& single : single_rows) {
+        const Block& block = row[single.row].active_block(x);
+        out[single.number] = block.phi(arguments(block, x));
     }
     for (const auto& c : general_constraint)
         if (inactive(*c, x))
@@ -75,10 +75,11 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 
 void Model::variation(const State& x, lie::Rows& out) const
 {
-    lie::Rows::Entry* entry = out.entry.data();
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
+    for (const PointRows& rows : point_rows) rows.variation(x, out.entry.data() + rows.entry);
+    for (const SingleRow& single : single_rows) {
+        const Block& block = row[single.row].active_block(x);
         const Variation v = block.variation(arguments(block, x));
+        lie::Rows::Entry* entry = out.entry.data() + single.entry;
         if (block.i != ground) entry->r = v.r_i, entry->pi = v.pi_i, ++entry;
         if (block.j != ground) entry->r = v.r_j, entry->pi = v.pi_j, ++entry;
     }
@@ -107,12 +108,11 @@ void Model::variation(const State& x, lie::Rows& out) const
 
 void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
-    Eigen::Index n = 0;
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
-        out[n++] = block.nu(arguments(block, x));
+    out.setZero();
+    for (const SingleRow& single : single_rows) {
+        const Block& block = row[single.row].active_block(x);
+        out[single.number] = block.nu(arguments(block, x));
     }
-    out.tail(out.size() - n).setZero();
     double nu_c[Constraint::max_rows];
     for (const auto& c : general_constraint) {
         if (inactive(*c, x)) continue;
@@ -124,10 +124,10 @@ void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 
 void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 {
-    Eigen::Index n = 0;
-    for (const int k : active) {
-        const Block& block = row[k].active_block(x);
-        out[n++] = block.gamma(arguments(block, x));
+    for (const PointRows& rows : point_rows) rows.gamma(x, out.data() + rows.first);
+    for (const SingleRow& single : single_rows) {
+        const Block& block = row[single.row].active_block(x);
+        out[single.number] = block.gamma(arguments(block, x));
     }
     double gamma_c[Constraint::max_rows];
     for (const auto& c : general_constraint) {

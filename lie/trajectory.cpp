@@ -51,7 +51,7 @@ TimeGrid TimeGrid::over(double t_end, double h, double dt)
     TimeGrid grid;
     grid.h = h;
     grid.steps = static_cast<long>(std::ceil(t_end / h - slack));
-    grid.interval = std::max(1L, static_cast<long>(std::ceil(dt / h - slack)));
+    grid.interval = std::max(1L, static_cast<long>(std::ceil(std::min(dt / h, 1e15) - slack)));
     return grid;
 }
 

@@ -64,6 +64,12 @@ public:
 
     const Driver* prescribed() const override { return f.is_constant() ? nullptr : &f; }
 
+    std::optional<PointRow> point_row() const override
+    {
+        if (global_axis < 0 || !f.is_constant()) return {};
+        return PointRow{i, j, s_bar_i, s_bar_j, global_axis, c[global_axis], f.f(0)};
+    }
+
     unsigned nonzero() const override
     {
         unsigned axes = 0;

@@ -272,7 +272,7 @@ Condensed::Condensed(const Mass& mass, const Rows& pattern)
     for (const double m : mass.m) by_sqrt_m.push_back(1 / std::sqrt(m));
     for (const Mat3& J_bar : mass.J_bar) L_inverse.push_back(Mat3(J_bar.llt().matrixL()).inverse());
     find_groups(pattern);
-    analyse(pattern);
+    find_order(pattern);
 }
 
 void Condensed::find_groups(const Rows& pattern)
@@ -283,8 +283,9 @@ void Condensed::find_groups(const Rows& pattern)
         return all;
     };
     const auto has_translation = [&](int k) {
-        return std::any_of(&pattern.entry[pattern.start[k]], &pattern.entry[pattern.start[k + 1]],
-                           [](const Rows::Entry& entry) { return translation_bits(entry) != 0; });
+        const auto entry = pattern.entry.begin();
+        return std::any_of(entry + pattern.start[k], entry + pattern.start[k + 1],
+                           [](const Rows::Entry& of) { return translation_bits(of) != 0; });
     };
     int w = 0;
     for (int k = 0; k < pattern.rows(); ++k) {
@@ -323,11 +324,10 @@ Condensed::Term Condensed::term_of(const Rows& pattern, int g, int s, int h, int
     return of;
 }
 
-void Condensed::analyse(const Rows& pattern)
+void Condensed::find_order(const Rows& pattern)
 {
     // groups are neighbours if they share a body
     const int n = static_cast<int>(group.size());
-    std::map<int, std::vector<std::pair<int, int>>> at_body;  // (group, index of the body in the group)
     for (int g = 0; g < n; ++g)
         for (int s = 0; s < group[g].bodies; ++s)
             at_body[pattern.entry[pattern.start[group[g].first] + s].body].emplace_back(g, s);
@@ -339,7 +339,7 @@ void Condensed::analyse(const Rows& pattern)
                 if (g != h) couplings += neighbours[g].insert(h).second;
 
     order = minimum_degree_order(neighbours);
-    std::vector<std::vector<int>> below = eliminate(order, neighbours);
+    below = eliminate(order, neighbours);
     const auto most = [&] {
         size_t blocks = 0;
         for (const std::vector<int>& of_column : below) blocks = std::max(blocks, of_column.size());
@@ -349,20 +349,44 @@ void Condensed::analyse(const Rows& pattern)
         order = least_height_order(neighbours);
         below = eliminate(order, neighbours);
     }
-    divided.assign(most_rows * most(), Column::Zero());
-    std::vector<int> position(n);
+    position.resize(n);
     for (int p = 0; p < n; ++p) position[order[p]] = p;
+    divided.assign(most_rows * most(), Column::Zero());
 
+    fill = -couplings / 2;
+    for (const auto& [body, all] : at_body)
+        for (const auto& [g, s] : all)
+            for (const auto& [h, t] : all)
+                if (position[g] >= position[h])
+                    products +=
+                        group[h].rows * (group[g].has_translation && group[h].has_translation ? 4 : 3);
+    for (int g = 0; g < n; ++g) {
+        const double m = group[g].rows, blocks = static_cast<double>(below[g].size());
+        products += 0.5 * m * (m + 1) * (1 + blocks);
+        fill += static_cast<long>(blocks);
+        for (size_t k = 0; k < below[g].size(); ++k)  // the blocks from k on, times block k
+            products += m * group[below[g][k]].rows * (blocks - static_cast<double>(k));
+    }
+}
+
+/// The first column of the block of the rows of group h in the columns of group g
+int Condensed::place(int h, int g) const
+{
+    if (h == g) return group[g].diagonal;
+    const auto found = std::lower_bound(below[g].begin(), below[g].end(), h,
+                                        [&](int a, int b) { return position[a] < position[b]; });
+    return group[g].diagonal + group[g].rows * (1 + static_cast<int>(found - below[g].begin()));
+}
+
+void Condensed::prepare(const Rows& pattern)
+{
     // storage of the blocks, column by column
     int size = 0;
-    std::map<std::pair<int, int>, int> place;  // (row group, column group)
     for (const int g : order) {
         group[g].diagonal = size;
-        place[{g, g}] = size;
         size += group[g].rows;
         column.push_back(static_cast<int>(block.size()));
         for (const int h : below[g]) {
-            place[{h, g}] = size;
             block.push_back({.of = h, .at = size});
             size += group[g].rows;
         }
@@ -375,34 +399,27 @@ void Condensed::analyse(const Rows& pattern)
         const int g = static_cast<int>(after - group.begin()) - 1;
         regularised_at.emplace_back(g, k - group[g].first);
     }
-    fill = static_cast<long>(block.size()) - couplings / 2;
 
     for (const auto& [body, all] : at_body)
         for (const auto& [g, s] : all)
             for (const auto& [h, t] : all) {
                 if (position[g] < position[h]) continue;
                 term.push_back(term_of(pattern, g, s, h, t));
-                term.back().at = place[{g, h}];
-                products += group[h].rows * (group[g].has_translation && group[h].has_translation ? 4 : 3);
+                term.back().at = place(g, h);
             }
     // Equal kernels follow each other: their calls are then predicted.
     std::stable_sort(term.begin(), term.end(),
                      [](const Term& a, const Term& b) { return a.kernel < b.kernel; });
     for (const int g : order) {
         update_start.push_back(static_cast<int>(update.size()));
-        const int m = group[g].rows;
-        products += 0.5 * m * (m + 1) * static_cast<double>(1 + below[g].size());
-        for (size_t i = 0; i < below[g].size(); ++i) {
-            const int h = below[g][i];
+        for (size_t i = 0; i < below[g].size(); ++i)
             for (size_t j = 0; j <= i; ++j) {
-                const int k = below[g][j];
+                const int h = below[g][i], k = below[g][j];
                 update.push_back({.by = group[k].rows,
-                                  .of = static_cast<int>(i) * m,
-                                  .at_by = place[{k, g}],
-                                  .to = place[{h, k}]});
-                products += m * group[k].rows;
+                                  .of = static_cast<int>(i) * group[g].rows,
+                                  .at_by = place(k, g),
+                                  .to = place(h, k)});
             }
-        }
     }
     update_start.push_back(static_cast<int>(update.size()));
 }
@@ -412,8 +429,8 @@ void Condensed::set_w(const Rows& C)
 {
     for (const Group& g : group)
         with_rows(g.rows, [&]<int rows>() {
-            const Rows::Entry* entry = &C.entry[C.start[g.first]];
-            Column* w = &W[g.w];
+            const Rows::Entry* entry = C.entry.data() + C.start[g.first];
+            Column* w = W.data() + g.w;
             for (int s = 0; s < g.bodies; ++s, ++entry, w += 6) {
                 const double by_sqrt = by_sqrt_m[entry->body];
                 const Mat3& L = L_inverse[entry->body];

@@ -23,13 +23,18 @@
 #include "lie/rows.hpp"
 
 #include <array>
+#include <map>
+#include <utility>
 
 namespace hilda::lie {
 
 class Condensed {
 public:
-    /// Analyses the pattern. For the metric `unit` of Saddle, `mass` is the identity.
+    /// Finds the order of elimination and the number of operations. For the metric `unit` of Saddle, `mass`
+    /// is the identity.
     Condensed(const Mass& mass, const Rows& pattern);
+    /// Makes the lists of operations, before the first factorisation. `pattern` is that of the constructor.
+    void prepare(const Rows& pattern);
 
     /// Factors S of these rows. Returns false if the smallest pivot is below 1e-8 of its diagonal entry, or
     /// not finite: the rows are nearly dependent or not finite. If `shift` = ε is positive, factors S + ε D,
@@ -82,7 +87,8 @@ private:
     void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (L⁻¹ f - Wᵀ y), λ = y; b holds L⁻¹ f on entry
 
     void find_groups(const Rows& pattern);
-    void analyse(const Rows& pattern);
+    void find_order(const Rows& pattern);
+    int place(int h, int g) const;
     Term term_of(const Rows& pattern, int g, int s, int h, int t) const;
     void set_w(const Rows& C);
 
@@ -90,7 +96,9 @@ private:
     std::vector<Mat3> L_inverse;    ///< L⁻¹ of J̄ = L Lᵀ
     std::vector<Group> group;
     std::vector<int> body_of;
-    std::vector<int> order;                 ///< of elimination, of the groups
+    std::map<int, std::vector<std::pair<int, int>>> at_body;  ///< groups at a body, and its index in them
+    std::vector<int> order, position;       ///< of elimination: the groups, and the place of each group in it
+    std::vector<std::vector<int>> below;    ///< off-diagonal blocks in the columns of each group
     std::vector<Term> term;                 ///< of S
     std::vector<int> column, update_start;  ///< first index into `block` and `update`, by position in `order`
     std::vector<Block> block;

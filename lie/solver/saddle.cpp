@@ -50,6 +50,8 @@ void Saddle::choose_solver()
     condensed = std::make_unique<Condensed>(metric == Metric::mass ? system.mass() : unit, solved());
     if (solver == LinearSolver::automatic && !keeps && condensed->operations() > klu.operations())
         condensed = nullptr;
+    else
+        condensed->prepare(solved());
 }
 
 /// Excludes from the factorisation the rows that are inactive in the state last evaluated.

@@ -43,7 +43,7 @@ const bool registered = [] {
             if (!saddle && solver == lie::LinearSolver::condensed) continue;
             auto* b = benchmark::RegisterBenchmark(("step/" + scheme.name + "/" + name).c_str(), step, scheme,
                                                    solver);
-            for (const int bars : {2, 8, 64, 128, 256, 1024}) b->Arg(bars);
+            for (const int bars : {2, 8, 64, 256, 1024, 4096}) b->Arg(bars);
             b->Unit(benchmark::kMicrosecond)->Complexity([](benchmark::IterationCount n) {
                 return static_cast<double>(n);
             });

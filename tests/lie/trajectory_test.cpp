@@ -76,3 +76,13 @@ TEST_CASE("a step in which a body rotates by half a turn or more is refused", "[
             CHECK(march.number() == (angle < std::numbers::pi ? 1 : 0));
         }
 }
+
+TEST_CASE("a grid with a huge output interval has the rows of its ends", "[lie][trajectory]")
+{
+    for (const double dt : {1e20, 1e300}) {
+        const lie::TimeGrid grid = lie::TimeGrid::over(1, 1e-3, dt);
+        CHECK(grid.is_row(0));
+        CHECK_FALSE(grid.is_row(1));
+        CHECK(grid.is_row(grid.steps));
+    }
+}

@@ -19,6 +19,7 @@
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 #include "studies/running/tables/run_table.hpp"
+#include "studies/running/watch/run_check.hpp"
 
 #include <fmt/format.h>
 
@@ -57,13 +58,6 @@ std::string event_name(contact::ContactEvent::Type type)
                                    : "fallback";
 }
 
-/// Four digits, rounded down, so that the printed step satisfies the limit
-std::string rounded_down(double positive)
-{
-    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 3);
-    return fmt::format("{:.4g}", std::floor(positive / unit) * unit);
-}
-
 }  // namespace
 
 SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory)
@@ -100,7 +94,11 @@ RunResult SingleRun::execute()
                        .tables = tables,
                        .coupling = options.coupling},
                       *integrator, watch);
-    check_step(from.has_value());
+    // A resumed run was checked when it started: an unstable step only gives a warning.
+    if (const std::string unstable =
+            check_run(*description.model, description.x, scheme, grid, options.force || from.has_value());
+        !unstable.empty())
+        warn(unstable);
     if (!description.events.empty()) events = make_events(integrator_settings, *tables);
     if (options.error)
         refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
@@ -162,14 +160,8 @@ void SingleRun::read()
     if (from && scheme.adaptive) earlier = io::number_in<double>(from->settings[interval_option]);
     grid = grid_of(options, result.end, scheme.adaptive, earlier);
     if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
-    const double reached = static_cast<double>(grid.steps) * grid.h,
-                 spacing = static_cast<double>(grid.interval) * grid.h;
-    if (reached > result.end * (1 + 1e-9))
-        warn(fmt::format("the end {} s is not a multiple of {}: the run ends at {:.12g} s", result.end,
-                         scheme.adaptive ? "--interval" : "the step", reached));
-    if (options.interval && *options.interval > 0 && spacing > *options.interval * (1 + 1e-9))
-        warn(fmt::format("--interval {} is not a multiple of the step: rows are {:.12g} s apart",
-                         *options.interval, spacing));
+    for (const std::string& warning : grid_warnings(grid, result.end, options.interval.value_or(0), scheme))
+        warn(warning);
     for (std::string& w : contact::soft_friction_warnings(*description.model, description.x))
         description.warnings.push_back(std::move(w));
     for (const std::string& w : description.warnings) warn(w);
@@ -228,42 +220,6 @@ RunSettings SingleRun::settings_of_run()
     if (options.fix_initial) all["--fix-initial"] = "";
     if (!options.plugins.empty()) all["--load"] = fmt::format("{}", fmt::join(options.plugins, " --load "));
     return all;
-}
-
-// A resumed run was checked when it started: it only gives a warning.
-void SingleRun::check_step(bool resumed) const
-{
-    const dae::Model& model = *description.model;
-    if (const dae::Model::MotionEnd motion = model.motion_end();
-        motion.t < static_cast<double>(grid.steps) * grid.h * (1 - 1e-12))
-        throw io::UsageError(fmt::format(
-            "run: --end must be at most {} s, the last sample of the motion of '{}', got {}", motion.t,
-            model.constraint_name(motion.constraint), static_cast<double>(grid.steps) * grid.h));
-    for (const auto& force : model.forces())
-        if (!scheme.histories && force->internal_states() > 0)
-            throw io::UsageError(
-                scheme.adaptive
-                    ? fmt::format(
-                          "run: {} chooses its own steps; {} has internal state variables and needs a "
-                          "fixed-step scheme{}",
-                          scheme.name, force->label(), scheme.resumes ? " or --step" : "")
-                    : fmt::format(
-                          "run: {} does not take loads with a history; {} has internal state variables",
-                          scheme.name, force->label()));
-    if (scheme.adaptive) return;
-    const dae::Model::StableStep stable = model.stable_step(description.x, scheme);
-    if (!(grid.h > stable.h)) return;
-    const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];
-    const std::string what =
-        fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
-                    rounded_down(stable.h), force.label());
-    if (!options.force && !resumed)
-        throw io::UsageError("run: " + what +
-                             (force.may_be_implicit() && scheme.implicit_springs
-                                  ? "; \"implicit\": true in this force removes this limit"
-                                  : "") +
-                             "; --force accepts it");
-    warn(what);
 }
 
 void SingleRun::load_checkpoint()

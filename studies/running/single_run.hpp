@@ -43,9 +43,6 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void read();
-    /// io::UsageError if the step exceeds the stability limit of a force, or if the scheme is adaptive and a
-    /// force has internal state variables.
-    void check_step(bool resumed) const;
     void load_checkpoint();
     /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
     void check_continues() const;

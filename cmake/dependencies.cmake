@@ -58,6 +58,39 @@ hilda_find_optional(HILDA_WITH_HDF5 "Tables in HDF5 files" "hilda run has no --f
 set(MPI_CXX_SKIP_MPICXX TRUE)
 hilda_find_optional(HILDA_WITH_MPI "Studies under mpirun" "hilda study does not run under mpirun" libopenmpi-dev MPI 3.1 COMPONENTS CXX)
 
+# Figures need a Python with matplotlib. On Debian this is /usr/bin/python3; another python3 may be first in
+# PATH.
+if(EXISTS /usr/bin/python3)
+    set(hilda_python_default /usr/bin/python3)
+else()
+    set(hilda_python_default python3)
+endif()
+set(HILDA_PYTHON "${hilda_python_default}" CACHE STRING "Python with matplotlib, for the figures and the Python package")
+
+# The Python package, which needs NumPy at run time. A library of the address sanitizer would have to be loaded before Python.
+set(HILDA_WITH_PYTHON AUTO CACHE STRING "Python package: AUTO (if pybind11 and the headers of Python are found), ON or OFF")
+set_property(CACHE HILDA_WITH_PYTHON PROPERTY STRINGS AUTO ON OFF)
+set(hilda_has_python FALSE)
+if(HILDA_WITH_PYTHON AND NOT HILDA_SANITIZE)
+    set(Python_EXECUTABLE "${HILDA_PYTHON}")
+    find_package(Python 3.11 QUIET COMPONENTS Interpreter Development.Module)
+    if(Python_FOUND)
+        set(PYBIND11_FINDPYTHON ON)
+        find_package(pybind11 2.10 CONFIG QUIET)
+    endif()
+    # The build does not need NumPy, and pip hides it. The tests do.
+    execute_process(COMMAND "${HILDA_PYTHON}" -c "import numpy" RESULT_VARIABLE no_numpy OUTPUT_QUIET ERROR_QUIET)
+    if(pybind11_FOUND AND (NOT no_numpy OR NOT HILDA_WITH_PYTHON STREQUAL "AUTO"))
+        message(STATUS "pybind11 ${pybind11_VERSION}, Python ${Python_VERSION}")
+        set(hilda_has_python TRUE)
+    elseif(HILDA_WITH_PYTHON STREQUAL "AUTO")
+        message(STATUS "pybind11, NumPy or the headers of Python 3.11 were not found: no Python package (Debian: apt-get install pybind11-dev python3-dev python3-numpy)")
+    else()
+        list(APPEND hilda_missing "pybind11 and Python 3.11")
+        list(APPEND hilda_missing_debian pybind11-dev python3-dev python3-numpy)
+    endif()
+endif()
+
 if(hilda_missing)
     list(REMOVE_DUPLICATES hilda_missing_debian)
     list(JOIN hilda_missing ", " hilda_missing)
@@ -69,12 +102,3 @@ endif()
 
 # Optional: used by studies/benchmarks only.
 find_package(benchmark CONFIG QUIET)
-
-# Figures need a Python with matplotlib. On Debian this is /usr/bin/python3; another python3 may be first in
-# PATH.
-if(EXISTS /usr/bin/python3)
-    set(hilda_python_default /usr/bin/python3)
-else()
-    set(hilda_python_default python3)
-endif()
-set(HILDA_PYTHON "${hilda_python_default}" CACHE STRING "Python with matplotlib, for the figures")

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path root = hilda::tests::source_dir;
-const std::set<std::string> rooms = {"io",       "lie",       "dae",   "contact",
-                                     "granular", "reference", "tests", "studies"};
+const std::set<std::string> rooms = {"io",        "lie",   "dae",     "contact", "granular",
+                                     "reference", "tests", "studies", "python"};
 
 /// The rooms that each room may include, besides itself.
 const std::map<std::string, std::set<std::string>> allowed_rooms = {
@@ -33,6 +33,7 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
     {"granular", {"io"}},
     {"reference", {"io", "dae", "lie"}},
     {"studies", {"io", "lie", "dae", "contact", "granular", "reference"}},
+    {"python", {"io", "lie", "dae", "contact", "reference", "studies"}},
     {"tests", {"io", "lie", "dae", "contact", "granular", "reference", "studies"}},
 };
 
@@ -128,6 +129,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "running/sinks",
       "running/tables",
       "running/watch"}},
+    {"python", {"", "bindings", "hilda"}},
 };
 
 /// A folder holds about 20 units. A unit is a header with its sources, or a source alone.
@@ -378,8 +380,8 @@ TEST_CASE("the top level of the tree has the documented entries", "[house]")
         ".gitignore",     ".clang-format",     ".clang-tidy", "lie",     "dae", "tests",
     };
     std::set<std::string> allowed = always;
-    allowed.insert({"io", "contact", "granular", "reference", "studies", "docs", "examples"});
-    allowed.insert({"CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md"});
+    allowed.insert({"io", "contact", "granular", "reference", "studies", "python", "docs", "examples"});
+    allowed.insert({"CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "pyproject.toml"});
 
     const std::set<std::string> top = tracked_top_level();
     if (top.empty()) {

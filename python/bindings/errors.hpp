@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The exceptions of the library as those of hilda.errors.
+
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace hilda::io {
+class NumericalFailure;
+}
+
+namespace hilda::python {
+
+namespace py = pybind11;
+
+/// From here on, exceptions of the library that leave a function of the module become exceptions of
+/// hilda.errors with the same text.
+void translate_exceptions();
+
+/// hilda.errors.NumericalFailure with the status and the text
+py::object numerical_failure(const io::NumericalFailure& failure, const std::string& text);
+
+/// The exception of Python for an exception of the library or of C++
+py::object python_error(const std::exception& error);
+
+/// Adds a line to an exception of Python: the place where it was raised.
+void add_note(const py::error_already_set& error, const std::string& note);
+
+}  // namespace hilda::python

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/bindings/model.hpp"
+
+#include "io/files.hpp"
+#include "io/json_source.hpp"
+#include "lie/schemes.hpp"
+#include "python/bindings/force.hpp"
+#include "python/bindings/state.hpp"
+#include "studies/framework/problem.hpp"
+#include "studies/running/named_model.hpp"
+
+#include <pybind11/stl.h>
+
+namespace hilda::python {
+
+namespace {
+
+using Names = std::vector<std::string>;
+/// Name, function, potential energy or None
+using Forces = std::vector<std::tuple<std::string, py::object, py::object>>;
+
+ModelPointer started(dae::Description description, const Forces& forces, bool fix_initial)
+{
+    auto model = std::make_shared<ModelObject>();
+    model->description = std::move(description);
+    dae::Model& of = *model->description.model;
+    for (const auto& [name, function, potential] : forces) {
+        auto force = std::make_unique<PythonForce>(name, function, potential, of.bodies());
+        model->functions.push_back(force.get());
+        of.load(std::move(force));
+    }
+    model->start = dae::start(model->description, {.fix_initial = fix_initial});
+    return model;
+}
+
+/// Makes the functions of a model visible to the garbage collector.
+void collect_functions(PyHeapTypeObject* heap_type)
+{
+    PyTypeObject& type = heap_type->ht_type;
+    type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+        Py_VISIT(Py_TYPE(self));
+        for (const PythonForce* force : py::cast<ModelObject&>(py::handle(self)).functions)
+            if (const int result = force->visit(visit, arg); result != 0) return result;
+        return 0;
+    };
+    type.tp_clear = [](PyObject* self) {
+        for (PythonForce* force : py::cast<ModelObject&>(py::handle(self)).functions) force->clear();
+        return 0;
+    };
+}
+
+py::dict report(const dae::StartReport& start)
+{
+    py::dict all;
+    all["rows"] = start.rows;
+    all["rank"] = start.rank;
+    all["degrees_of_freedom"] = start.degrees_of_freedom;
+    all["dropped"] = start.dropped;
+    all["position_residual"] = start.position_residual;
+    all["velocity_residual"] = start.velocity_residual;
+    all["projected"] = start.projected;
+    return all;
+}
+
+Names names_of_bodies(const ModelObject& m)
+{
+    Names names;
+    for (const dae::Body& body : m.description.model->all_bodies()) names.push_back(body.name);
+    return names;
+}
+
+py::dict properties(const lie::Scheme& scheme)
+{
+    py::dict all;
+    all["name"] = scheme.name;
+    all["description"] = scheme.description;
+    all["order"] = scheme.order;
+    all["order_lambda"] = scheme.order_lambda;
+    all["formulation"] = scheme.formulation;
+    all["source"] = scheme.source;
+    all["adaptive"] = scheme.adaptive || scheme.adaptive_form != nullptr;
+    all["fixed_step"] = !scheme.adaptive;
+    all["rho_infinity"] = scheme.rho_infinity;
+    return all;
+}
+
+}  // namespace
+
+void define_model(py::module_& m)
+{
+    py::class_<ModelObject, ModelPointer>(m, "_Model", py::custom_type_setup(&collect_functions))
+        .def_property_readonly("name", [](const ModelObject& model) { return model.description.name; })
+        .def_property_readonly("end", [](const ModelObject& model) { return model.description.end; })
+        .def_property_readonly("text", [](const ModelObject& model) { return model.description.text; })
+        .def_property_readonly("warnings",
+                               [](const ModelObject& model) { return model.description.warnings; })
+        .def_property_readonly("bodies", &names_of_bodies)
+        .def_property_readonly("report", [](const ModelObject& model) { return report(model.start); })
+        .def("state", [](const ModelObject& model) {
+            return std::make_shared<StateObject>(StateObject{model.description.x, false});
+        });
+    m.def(
+        "_read_named",
+        [](const std::string& name, const Names& set, const Forces& forces, bool fix_initial) {
+            return started(studies::named_model(name, set, ""), forces, fix_initial);
+        },
+        py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("fix_initial"));
+    m.def(
+        "_read_text",
+        [](const std::string& text, const std::string& file, const Names& set, const std::string& folder,
+           const Forces& forces, bool fix_initial) {
+            return started(dae::read_model(text, file, set, "", folder), forces, fix_initial);
+        },
+        py::arg("text"), py::arg("file"), py::arg("set"), py::arg("folder"), py::arg("forces"),
+        py::arg("fix_initial"));
+    m.def("_integrators", [] {
+        py::list all;
+        for (const lie::Scheme& scheme : lie::schemes()) all.append(properties(scheme));
+        return all;
+    });
+    m.def("_problems", [] {
+        std::vector<std::pair<std::string, std::string>> all;
+        for (const studies::Problem& problem : studies::problems())
+            all.emplace_back(problem.name, problem.what);
+        return all;
+    });
+    m.def("_is_path", &studies::is_model_path);
+    m.def("_text_of", [](const std::string& name) {
+        return studies::is_model_path(name) ? io::read_file(name, io::JsonSource::max_bytes)
+                                            : studies::problem(name).model;
+    });
+}
+
+}  // namespace hilda::python

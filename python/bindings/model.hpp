@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Models in Python.
+
+#pragma once
+
+#include "dae/model_file.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <vector>
+
+namespace hilda::python {
+
+namespace py = pybind11;
+
+class PythonForce;
+
+/// A model that has been read and has a consistent start. It is constant from then on, so that several
+/// threads may use it at the same time.
+struct ModelObject {
+    dae::Description description;
+    dae::StartReport start;
+    std::vector<PythonForce*> functions;  ///< the forces of the model that are functions
+};
+using ModelPointer = std::shared_ptr<ModelObject>;
+
+/// Adds the class _Model and the lists of models and integrators to the module.
+void define_model(py::module_& m);
+
+}  // namespace hilda::python

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The extension module hilda._hilda. The package hilda has its public names.
+
+#include "hilda/version.hpp"
+#include "python/bindings/errors.hpp"
+#include "python/bindings/model.hpp"
+#include "python/bindings/run.hpp"
+#include "python/bindings/state.hpp"
+
+PYBIND11_MODULE(_hilda, m)
+{
+    using namespace hilda::python;
+    m.attr("__version__") = hilda::studies::version::number;
+    translate_exceptions();
+    define_state(m);
+    define_model(m);
+    define_run(m);
+}

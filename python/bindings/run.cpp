@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/bindings/run.hpp"
+
+#include "contact/evolving/unilateral.hpp"
+#include "contact/soft_friction.hpp"
+#include "io/error.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "python/bindings/errors.hpp"
+#include "python/bindings/model.hpp"
+#include "python/bindings/signals.hpp"
+#include "python/bindings/state.hpp"
+#include "studies/running/diagnosis.hpp"
+#include "studies/running/watch/run_check.hpp"
+#include "studies/running/watch/watch.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+namespace hilda::python {
+
+namespace {
+
+struct Options {
+    std::string integrator;
+    double end, step, interval;
+    bool adaptive;
+    lie::Settings settings;
+    bool reactions, force;
+    py::object observer;
+};
+
+using Array = py::array_t<double>;
+
+/// Writes the output rows of a run into arrays that Python owns. The arrays have their final size from the
+/// start.
+class Rows final : public lie::Observer {
+public:
+    Rows(const dae::Model& model, const lie::TimeGrid& grid, bool with_reactions)
+        : model(model), grid(grid), bodies(static_cast<size_t>(model.bodies())),
+          multipliers(static_cast<size_t>(model.rows())), with_reactions(with_reactions), C(model.pattern()),
+          reactions(bodies)
+    {
+        const auto n = grid.steps / grid.interval + 1 + (grid.steps % grid.interval != 0 ? 1 : 0);
+        const auto b = static_cast<py::ssize_t>(bodies);
+        t = make("t", {n});
+        energy = make("energy", {n});
+        for (Vectors& v : vectors) v.to = make(v.name, {n, b, 3});
+        A = make("A", {n, b, 3, 3});
+        lambda = make("lambda_", {n, static_cast<py::ssize_t>(multipliers)});
+        if (with_reactions) F = make("reaction_F", {n, b, 3}), T = make("reaction_T", {n, b, 3});
+    }
+
+    void accepted(const lie::State& x, long n, int /*iterations*/) override
+    {
+        const double residual = model.largest_residual(x).value;
+        if (!(residual <= constraint_norm)) constraint_norm = residual;
+        if (grid.is_row(n) && n > last) write(x), last = n;
+        dae::check_dropped_rows(model, x);
+    }
+
+    const py::dict& arrays() const { return all; }
+    size_t number() const { return rows; }
+    double constraint_norm = 0;  ///< largest scaled residual of all nodes [m or rad]
+
+private:
+    void write(const lie::State& x)
+    {
+        t[rows] = x.t;
+        energy[rows] = lie::energy(model, x);
+        for (const Vectors& v : vectors) {
+            double* to = v.to + 3 * bodies * rows;
+            for (const lie::Motion& body : x.body) to = std::copy_n((body.*v.of).data(), 3, to);
+        }
+        double* to = A + 9 * bodies * rows;
+        for (const lie::Motion& body : x.body)
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) *to++ = body.A(i, j);
+        std::copy_n(x.lambda.data(), multipliers, lambda + multipliers * rows);
+        if (with_reactions) {
+            dae::reactions(model, x, C, reactions);
+            for (size_t b = 0; b < bodies; ++b) {
+                std::copy_n(reactions[b].F.data(), 3, F + 3 * (bodies * rows + b));
+                std::copy_n(reactions[b].T.data(), 3, T + 3 * (bodies * rows + b));
+            }
+        }
+        ++rows;
+    }
+
+    double* make(const char* name, std::vector<py::ssize_t> shape)
+    {
+        Array array(std::move(shape));
+        all[name] = array;
+        return array.mutable_data();
+    }
+
+    struct Vectors {
+        const char* name;
+        lie::Vec3 lie::Motion::*of;
+        double* to = nullptr;
+    };
+    Vectors vectors[5] = {{"r", &lie::Motion::r},
+                          {"rdot", &lie::Motion::rdot},
+                          {"rddot", &lie::Motion::rddot},
+                          {"omega_bar", &lie::Motion::omega_bar},
+                          {"omegadot_bar", &lie::Motion::omegadot_bar}};
+    const dae::Model& model;
+    const lie::TimeGrid& grid;
+    const size_t bodies, multipliers;
+    const bool with_reactions;
+    lie::Rows C;
+    std::vector<dae::Reaction> reactions;
+    py::dict all;
+    double *t, *energy, *A, *lambda, *F = nullptr, *T = nullptr;
+    size_t rows = 0;
+    long last = -1;
+};
+
+/// Calls a Python function with each node. The run ends if it returns True.
+class PythonObserver final : public lie::Observer {
+public:
+    explicit PythonObserver(py::object function) : function(std::move(function)) {}
+
+    void accepted(const lie::State& x, long /*n*/, int /*iterations*/) override
+    {
+        if (stopped) return;  // the node after the last one
+        const py::gil_scoped_acquire gil;
+        try {
+            const StatePool::Lent lent(pool, x);
+            const int truth = PyObject_IsTrue(function(lent.object()).ptr());
+            if (truth < 0) throw py::error_already_set();
+            stopped = truth == 1;
+        } catch (const py::error_already_set& error) {
+            add_note(error, fmt::format("in the observer at t = {} s", x.t));
+            throw;
+        }
+    }
+
+    bool stopped = false;
+
+private:
+    py::object function;
+    StatePool pool;
+};
+
+/// What a run leaves besides its arrays
+struct Outcome {
+    std::string status = "ok";
+    double t = 0;
+    lie::Statistics statistics = {};
+    py::object error = py::none();  ///< exception that ended the run
+};
+
+py::object with_traceback(const py::error_already_set& error)
+{
+    return error.trace() ? error.value().attr("with_traceback")(error.trace()) : error.value();
+}
+
+lie::Statistics march(lie::March& march, const lie::Integrator& integrator, const lie::TimeGrid& grid,
+                      std::span<lie::Observer* const> observers, PythonObserver* observer, Signals& signals)
+{
+    const py::gil_scoped_release release;
+    while (march.number() < grid.steps && !signals.raised() && !(observer != nullptr && observer->stopped))
+        march.advance(observers);
+    const lie::Statistics statistics = integrator.statistics();  // without the additional step of finish()
+    if (!signals.error()) march.finish(observers);
+    return statistics;
+}
+
+Outcome advance(lie::March& run, const lie::Integrator& integrator, const lie::TimeGrid& grid,
+                std::span<lie::Observer* const> observers, PythonObserver* observer, const dae::Model& model,
+                const lie::Scheme& scheme)
+{
+    Outcome out;
+    Signals signals;
+    try {
+        out.statistics = march(run, integrator, grid, observers, observer, signals);
+        if (observer != nullptr && observer->stopped) out.status = "stopped";
+    } catch (const lie::Interrupted&) {
+    } catch (const io::NumericalFailure& failure) {
+        // The start node of the failed step is the last valid node, and may be an output row.
+        out.status = failure.status;
+        std::string text = failure.what();
+        try {
+            const studies::Diagnosis d =
+                studies::diagnose(failure, model, run.node(), run.number(), grid.h, scheme);
+            text = d.what + (d.detail.empty() ? "" : "; " + d.detail);
+            run.finish(observers);
+        } catch (const io::NumericalFailure&) {
+        } catch (const py::error_already_set&) {  // of a force or an observer, beyond the failure
+        }
+        out.error = numerical_failure(failure, text);
+    } catch (const py::error_already_set& error) {
+        out.status = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
+        out.error = with_traceback(error);
+    } catch (const std::exception& error) {
+        out.status = "error";
+        out.error = python_error(error);
+    }
+    if (signals.error()) {
+        out.status = "interrupted";
+        out.error = with_traceback(*signals.error());
+    }
+    out.t = run.node().t;
+    return out;
+}
+
+py::dict counters(const lie::Statistics& of)
+{
+    py::dict all;
+    all["steps"] = of.steps;
+    all["iterations"] = of.iterations;
+    all["factorizations"] = of.factorizations;
+    all["refactorizations"] = of.refactorizations;
+    return all;
+}
+
+py::dict run(const ModelPointer& model, const Options& options)
+{
+    const dae::Description& of = model->description;
+    const dae::Model& system = *of.model;
+    const lie::Scheme* scheme = &lie::scheme(options.integrator);
+    if (options.adaptive) scheme = &scheme->with_adaptive_steps();
+    const lie::TimeGrid grid = scheme->adaptive
+                                   ? lie::TimeGrid::over(options.end, options.interval)
+                                   : lie::TimeGrid::over(options.end, options.step, options.interval);
+    std::vector<std::string> warnings = of.warnings;
+    if (!of.events.empty())
+        throw io::UsageError(
+            "run: the model has events, which hilda run finds and Python does not; remove "
+            "\"events\", or use an observer");
+    for (const std::string& row : model->start.dropped)
+        warnings.push_back(row + ": redundant with the constraints before it, dropped from the equations");
+    for (std::string& warning : contact::soft_friction_warnings(system, of.x))
+        warnings.push_back(std::move(warning));
+    for (std::string& warning : studies::grid_warnings(grid, options.end, options.interval, *scheme))
+        warnings.push_back(std::move(warning));
+    if (std::string warning = studies::check_run(system, of.x, *scheme, grid, options.force);
+        !warning.empty())
+        warnings.push_back(std::move(warning));
+
+    lie::Settings settings = options.settings;
+    settings.stop = &Signals::raised_in_run;
+    const auto integrator = contact::make_integrator(system, *scheme, settings);
+    studies::Watch watch(system, of.x, *integrator, *scheme, grid, studies::Watch::Action::stop,
+                         options.force);
+    Rows rows(system, grid, options.reactions);
+    std::vector<lie::Observer*> observers{&rows, &watch};
+    std::unique_ptr<PythonObserver> observer;
+    if (!options.observer.is_none()) {
+        observer = std::make_unique<PythonObserver>(options.observer);
+        observers.push_back(observer.get());
+    }
+    lie::March march(of.x, *integrator, grid.h);
+    const Outcome out = advance(march, *integrator, grid, observers, observer.get(), system, *scheme);
+
+    for (const studies::Finding& found : watch.findings()) warnings.push_back(found.text);
+    if (std::string warning = studies::rank_warning(*integrator); !warning.empty())
+        warnings.push_back(std::move(warning));
+    py::dict result;
+    result["arrays"] = rows.arrays();
+    result["rows"] = rows.number();
+    result["status"] = out.status;
+    result["error"] = out.error;
+    result["t_end"] = out.t;
+    result["integrator"] = scheme->name;
+    result["step"] = scheme->adaptive ? py::object(py::none()) : py::object(py::float_(grid.h));
+    result["statistics"] = counters(out.statistics.steps > 0 ? out.statistics : integrator->statistics());
+    result["constraint_norm"] = rows.constraint_norm;
+    result["warnings"] = warnings;
+    return result;
+}
+
+lie::LinearSolver linear_solver(const std::string& name)
+{
+    if (name == "auto") return lie::LinearSolver::automatic;
+    if (name == "klu") return lie::LinearSolver::klu;
+    if (name == "condensed") return lie::LinearSolver::condensed;
+    throw io::InvalidInput("run: linear_solver must be auto, klu or condensed, got '" + name + "'");
+}
+
+}  // namespace
+
+void define_run(py::module_& m)
+{
+    m.def(
+        "_run",
+        [](const ModelPointer& model, const std::string& integrator, double end, double step, double interval,
+           bool adaptive, double rtol, double atol, double tolerance, int max_iterations,
+           const std::string& solver, double rho_infinity, bool reactions, bool force, py::object observer) {
+            return run(model, {.integrator = integrator,
+                               .end = end,
+                               .step = step,
+                               .interval = interval,
+                               .adaptive = adaptive,
+                               .settings = {.tolerance = tolerance,
+                                            .max_iterations = max_iterations,
+                                            .linear_solver = linear_solver(solver),
+                                            .rho_infinity = rho_infinity,
+                                            .rtol = rtol,
+                                            .atol = atol},
+                               .reactions = reactions,
+                               .force = force,
+                               .observer = std::move(observer)});
+        },
+        py::arg("model"), py::arg("integrator"), py::arg("end"), py::arg("step"), py::arg("interval"),
+        py::arg("adaptive"), py::arg("rtol"), py::arg("atol"), py::arg("tolerance"),
+        py::arg("max_iterations"), py::arg("linear_solver"), py::arg("rho_infinity"), py::arg("reactions"),
+        py::arg("force"), py::arg("observer"));
+}
+
+}  // namespace hilda::python

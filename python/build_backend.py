@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Build backend of the Python package (PEP 517).
+
+Compiles the extension module by CMake in build/python-cpython-311, and packs it with the files of python/hilda into a wheel.
+Uses the standard library only. Environment: HILDA_CMAKE_ARGS has further arguments of CMake,
+CMAKE_BUILD_PARALLEL_LEVEL the number of jobs.
+"""
+
+import base64
+import hashlib
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tomllib
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build" / f"python-{sys.implementation.cache_tag}"
+
+
+def get_requires_for_build_wheel(config_settings=None):
+    return []
+
+
+def get_requires_for_build_sdist(config_settings=None):
+    return []
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """The metadata without a build."""
+    info, texts = wheel_information(metadata())
+    for path, text in texts.items():
+        file = pathlib.Path(metadata_directory) / path
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text)
+    return info
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    module = compile_module()
+    files = {f"hilda/{path.name}": path for path in sorted((ROOT / "python/hilda").iterdir())
+             if path.suffix in (".py", ".pyi", ".typed")}
+    files[f"hilda/{module.name}"] = module
+    return write_wheel(pathlib.Path(wheel_directory), files)
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    project = metadata()
+    name = f"hilda-{project['version']}"
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    with tarfile.open(pathlib.Path(sdist_directory) / f"{name}.tar.gz", "w:gz") as archive:
+        for path in listed.splitlines():
+            archive.add(ROOT / path, f"{name}/{path}")
+    return f"{name}.tar.gz"
+
+
+def metadata():
+    """The table [project] of pyproject.toml."""
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+def compile_module():
+    """Configures and builds the extension module. Returns its path."""
+    for tool in ("cmake", "c++"):
+        if shutil.which(tool) is None:
+            raise SystemExit(f"hilda: error: {tool} was not found (Debian: apt-get install g++ cmake)")
+    generator = ["-G", "Ninja"] if shutil.which("ninja") and not (BUILD / "CMakeCache.txt").exists() else []
+    command(["cmake", "-S", ROOT, "-B", BUILD, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DHILDA_TESTS=OFF", "-DHILDA_CUDA=OFF",
+             "-DHILDA_WITH_PYTHON=ON", f"-DHILDA_PYTHON={sys.executable}", *shlex.split(os.environ.get("HILDA_CMAKE_ARGS", ""))])
+    jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count()))
+    command(["cmake", "--build", BUILD, "--parallel", jobs, "--target", "hilda_python"])
+    return BUILD / "python/hilda" / f"_hilda{sysconfig.get_config_var('EXT_SUFFIX')}"
+
+
+def command(arguments):
+    try:
+        subprocess.run(arguments, check=True)
+    except subprocess.CalledProcessError as error:
+        raise SystemExit(f"hilda: error: '{' '.join(map(str, arguments[:2]))} ...' ended with {error.returncode}") from None
+
+
+def wheel_tag():
+    version = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    return f"{version}-{version}-{platform}"
+
+
+def wheel_information(project):
+    """The folder .dist-info of the wheel, and the texts of its files by path."""
+    info = f"hilda-{project['version']}.dist-info"
+    lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {project['version']}",
+             f"Summary: {project['description']}", "License: GPL-3.0-or-later", f"Requires-Python: {project['requires-python']}",
+             *(f"Requires-Dist: {package}" for package in project["dependencies"])]
+    texts = {f"{info}/METADATA": "\n".join(lines) + "\n\n" + (ROOT / "README.md").read_text(),
+             f"{info}/WHEEL": f"Wheel-Version: 1.0\nGenerator: hilda\nRoot-Is-Purelib: false\nTag: {wheel_tag()}\n",
+             f"{info}/LICENSE": (ROOT / "LICENSE").read_text()}
+    return info, texts
+
+
+def write_wheel(folder, files):
+    """Writes the wheel with these files (PEP 427), and returns its name."""
+    project = metadata()
+    info, texts = wheel_information(project)
+    name = f"hilda-{project['version']}-{wheel_tag()}.whl"
+    record = []
+    with zipfile.ZipFile(folder / name, "w", zipfile.ZIP_DEFLATED) as wheel:
+        def add(path, content):
+            wheel.writestr(path, content)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+            record.append(f"{path},sha256={digest},{len(content)}")
+
+        for path, file in files.items():
+            add(path, file.read_bytes())
+        for path, text in texts.items():
+            add(path, text.encode())
+        record.append(f"{info}/RECORD,,")
+        wheel.writestr(f"{info}/RECORD", "\n".join(record) + "\n")
+    return name

@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Multibody dynamics with friction and contact, on rotation matrices.
+
+    import hilda
+    result = hilda.run("double_pendulum", "rA-dop853", rtol=1e-9)
+    result.plot()
+"""
+
+from . import errors  # before the extension module, which raises them
+from ._hilda import State, __version__
+from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailure, UsageError
+from .model import Model, integrators, problems, run
+from .result import BodyResult, Result
+
+__all__ = ["BodyResult", "Error", "FileError", "InvalidInput", "Model", "NotAvailable", "NumericalFailure", "Result",
+           "State", "UsageError", "__version__", "errors", "integrators", "problems", "run"]

@@ -1,0 +1,270 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models of mechanisms."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any, Callable, Mapping
+
+from . import _hilda
+from ._hilda import State
+from .errors import InvalidInput, UsageError
+from .result import Result
+
+Source = str | os.PathLike[str] | dict[str, Any]
+
+DEFAULT_INTEGRATOR = "rA-half-1-momentum"
+
+
+class Model:
+    """A mechanism: bodies, constraints, forces and contacts.
+
+    Args:
+        source: one of
+
+            - the path of a model file (JSON), or the name of a built-in model, see problems(),
+            - a dict with the content of a model file,
+            - None: an empty model, which body(), constraint(), force() and contact() extend.
+        set: changes of the model, from JSON pointers to values: {"/bodies/0/mass": 2}.
+        folder: folder of the files that a dict names by relative paths; default: the current one.
+        fix_initial: project initial data that violate the constraints, instead of refusing them.
+        **keys: keys of an empty model, such as gravity=[0, 0, -9.81], name="arm", end=2.
+
+    The keys of bodies, constraints, forces and contacts are those of the model file, see
+    docs/reference/model-file.md. They are checked when the model is used for the first time: all errors are
+    InvalidInput with the place in the model.
+    """
+
+    def __init__(self, source: Source | None = None, *, set: Mapping[str, Any] | None = None,
+                 folder: str | os.PathLike[str] = "", fix_initial: bool = False, **keys: Any) -> None:
+        if source is not None and keys:
+            raise UsageError("Model: the keys " + ", ".join(keys) + " are for a new model, without a source")
+        self._name: str | None = None
+        self._data: dict[str, Any] | None = None
+        if source is None:
+            self._data = {"hilda_model": 1, "name": "model", **_json(keys)}
+        elif isinstance(source, dict):
+            self._data = _json(source)
+        else:
+            self._name = os.fspath(source)
+        self._set = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
+        self._folder = os.fspath(folder)
+        self._fix_initial = fix_initial
+        self._forces: list[tuple[str, Callable[[State], Any], Callable[[State], float] | None]] = []
+        self._started: _hilda._Model | None = None
+        self._starting = False
+
+    def body(self, name: str, **keys: Any) -> Model:
+        """Adds a body. Keys: mass [kg], inertia [kg m^2], r [m], and others of the model file."""
+        return self._add("bodies", {"name": name, **keys})
+
+    def constraint(self, type: str, **keys: Any) -> Model:
+        """Adds a joint, a driver or another constraint of this type, such as "revolute"."""
+        return self._add("constraints", {"type": type, **keys})
+
+    def force(self, type: str | Callable[[State], Any], **keys: Any) -> Model:
+        """Adds a force of this type, such as "spring-damper", or a function of the state.
+
+        A function `force(state)` returns F, or (F, n_bar): arrays of the shape (bodies, 3) with the forces
+        [N, global frame, at the centres of mass] and the torques [N m, body frames] of all bodies. It is called
+        for each evaluation of the loads, which takes about 2 us. Keys: name, and potential, a function of the
+        state that returns the potential energy [J]. Implicit integrators do not differentiate it.
+        """
+        if callable(type):
+            name = keys.pop("name", getattr(type, "__name__", "force"))
+            potential = keys.pop("potential", None)
+            if keys:
+                raise UsageError(f"force '{name}': unknown keys {', '.join(keys)}; a function has name and potential")
+            self._forces.append((name, type, potential))
+            self._started = None
+            return self
+        return self._add("forces", {"type": type, **keys})
+
+    def contact(self, **keys: Any) -> Model:
+        """Adds a contact. Keys: those of the model file."""
+        return self._add("contacts", keys)
+
+    def _add(self, group: str, entry: dict[str, Any]) -> Model:
+        if self._data is None:
+            assert self._name is not None
+            self._data = json.loads(_hilda._text_of(self._name))
+            if not self._folder and _hilda._is_path(self._name):
+                self._folder = os.path.dirname(self._name)
+            self._name = None
+        self._data.setdefault(group, []).append(_json(entry))
+        self._started = None
+        return self
+
+    def _core(self) -> _hilda._Model:
+        """The model of the extension module, with a consistent start."""
+        if self._starting:
+            raise UsageError("a force must not use the properties of its model while the model is started")
+        if self._started is None:
+            self._starting = True
+            try:
+                self._started = self._read()
+            finally:
+                self._starting = False
+        return self._started
+
+    def _read(self) -> _hilda._Model:
+        if self._name is not None:
+            return _hilda._read_named(self._name, self._set, self._forces, self._fix_initial)
+        text = json.dumps(self._data, indent=1)
+        return _hilda._read_text(text, "model", self._set, self._folder, self._forces, self._fix_initial)
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return self._core().name
+
+    @property
+    def end(self) -> float:
+        """Default end of a run [s]."""
+        return self._core().end
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies, in the order of the arrays."""
+        return self._core().bodies
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """Rows, rank, degrees of freedom and residuals of the start, as a dict."""
+        return self._core().report
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the reader, with their places in the model."""
+        return self._core().warnings
+
+    @property
+    def start(self) -> State:
+        """The consistent initial State."""
+        return self._core().state()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The content of the model file, with defaults and changes filled in."""
+        content: dict[str, Any] = json.loads(self._core().text)
+        return content
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the model file. Forces that are functions are not part of it."""
+        if self._forces:
+            raise UsageError(f"Model.save: force '{self._forces[0][0]}' is a function; a model file cannot have it")
+        text = self._core().text
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def run(self, integrator: str = DEFAULT_INTEGRATOR, *, end: float | None = None, step: float | None = None,
+            interval: float | None = None, rtol: float | None = None, atol: float | None = None,
+            tolerance: float = 1e-10, max_iterations: int = 30, linear_solver: str = "auto",
+            rho_infinity: float | None = None, reactions: bool = False,
+            observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
+        """Integrates the model and returns a Result.
+
+        Args:
+            integrator: name of an integrator, see integrators().
+            end: end of the run [s]; default: that of the model.
+            step: step [s]; default 1e-3 for integrators with a fixed step. Integrators with adaptive steps take
+                rtol and atol instead.
+            interval: time between rows of the result [s]; default: end/1000, 0: a row for each step.
+            rtol, atol: tolerances of integrators with adaptive steps; default 1e-10, and atol = rtol.
+            tolerance, max_iterations: of Newton's method.
+            linear_solver: "auto", "klu" or "condensed".
+            rho_infinity: numerical damping from 0 to 1, default 0.8, of integrators that have it.
+            reactions: store the constraint forces and torques on each body.
+            observer: function of the State of each node (each row, with adaptive steps). The run ends if it
+                returns True.
+            force: accept a step above the stability limit of a force.
+
+        Other threads run meanwhile. Ctrl-C ends the run: the KeyboardInterrupt has the rows up to then as
+        attribute `result`.
+
+        Raises:
+            InvalidInput, UsageError: before the run.
+            NumericalFailure: with the rows up to the failure as attribute `result`.
+        """
+        core = self._core()
+        scheme = _scheme(integrator)
+        adaptive = scheme["adaptive"] and step is None
+
+        def require(condition: bool, text: str) -> None:
+            if not condition:
+                raise UsageError(f"run: {integrator}: {text}")
+
+        if step is not None:
+            require(scheme["fixed_step"], "chooses its own steps by rtol and atol; step is for integrators with a fixed step")
+        if rtol is not None or atol is not None:
+            require(scheme["adaptive"], "has a fixed step; rtol and atol are for integrators with adaptive steps")
+            require(adaptive, "has a fixed step with step, and adaptive steps with rtol and atol; give one of them")
+        if rho_infinity is not None:
+            require(scheme["rho_infinity"], "does not use rho_infinity")
+            require(0 <= rho_infinity <= 1, f"rho_infinity must be from 0 to 1, got {rho_infinity}")
+        require(0 < tolerance < float("inf"), f"tolerance must be positive and finite, got {tolerance}")
+        require(1 <= max_iterations < 2**31, f"max_iterations must be a positive integer, got {max_iterations}")
+        require(atol is None or atol > 0, f"atol must be positive, got {atol}")
+        end = core.end if end is None else float(end)
+        if interval is None:
+            interval = end / 1000 if end > 0 or not adaptive else 1e-3
+        require(interval > 0 or not adaptive, f"chooses its own steps; interval must be positive, got {interval}")
+        outcome = _hilda._run(core, integrator, end, 1e-3 if step is None else float(step), float(interval), adaptive,
+                              1e-10 if rtol is None else float(rtol), 0.0 if atol is None else float(atol),
+                              float(tolerance), int(max_iterations), linear_solver,
+                              0.8 if rho_infinity is None else float(rho_infinity), bool(reactions), bool(force), observer)
+        error = outcome.pop("error")
+        result = Result(core, outcome)
+        if error is None:
+            return result
+        error.result = result
+        try:
+            raise error
+        finally:
+            del error  # its traceback has this frame: otherwise the arrays would remain until a garbage collection
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_started": None}  # read again after a copy or in another process
+
+    def __repr__(self) -> str:
+        if self._started is None:
+            return f"<hilda.Model {self._name or (self._data or {}).get('name')}>"
+        report = self.report
+        return (f"<hilda.Model {self.name}: {len(self.bodies)} bodies, {report['rows']} constraint rows, "
+                f"{report['degrees_of_freedom']} degrees of freedom>")
+
+
+def run(model: Model | Source, integrator: str = DEFAULT_INTEGRATOR, **options: Any) -> Result:
+    """Integrates a model: a Model, the path of a model file, the name of a built-in model, or a dict.
+
+    The options are those of Model.run().
+    """
+    return (model if isinstance(model, Model) else Model(model)).run(integrator, **options)
+
+
+def integrators() -> dict[str, dict[str, Any]]:
+    """The integrators, as a dict from their names to their properties."""
+    return {scheme["name"]: scheme for scheme in _hilda._integrators()}
+
+
+def problems() -> dict[str, str]:
+    """The built-in models, as a dict from their names to their descriptions."""
+    return dict(_hilda._problems())
+
+
+def _scheme(name: str) -> dict[str, Any]:
+    for scheme in _hilda._integrators():
+        if scheme["name"] == name:
+            return scheme
+    raise UsageError("run: an integrator must be one of " + ", ".join(integrators()) + f"; got '{name}'")
+
+
+def _json(value: Any) -> Any:
+    """A copy that consists of the types of JSON. NumPy arrays become lists."""
+    return json.loads(json.dumps(value, default=_listed))
+
+
+def _listed(value: Any) -> Any:
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise InvalidInput(f"a model cannot contain a {type(value).__name__}, got {value!r}")

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Results of runs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from numpy import float64
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from . import _hilda
+
+
+class Result:
+    """The rows of a run. Arrays have the time as first index, and are not copied.
+
+    Attributes:
+        t: times [s]; shape (n,).
+        r, rdot, rddot: positions, velocities and accelerations of the centres of mass, global frame
+            [m, m/s, m/s^2]; shape (n, bodies, 3).
+        A: rotation matrices from the body frames to the global frame; shape (n, bodies, 3, 3).
+        omega_bar, omegadot_bar: angular velocities and accelerations, body frames [rad/s, rad/s^2]; shape
+            (n, bodies, 3).
+        lambda_: multipliers of the constraint rows; shape (n, rows).
+        energy: kinetic and potential energy [J]; shape (n,).
+        reaction_F, reaction_T: with reactions=True, constraint forces [N, global frame] and torques
+            [N m, body frame] on each body; shape (n, bodies, 3). Otherwise None.
+        bodies: names of the bodies.
+        model, integrator: their names.
+        step: step [s], None with adaptive steps.
+        status: "ok", "stopped" (by the observer), "interrupted", "error" or that of a NumericalFailure.
+        t_end: time reached [s].
+        statistics: numbers of steps, iterations and factorisations.
+        constraint_norm: largest scaled residual of the constraints in all nodes [m or rad].
+        warnings: warnings of the model and of the run.
+    """
+
+    t: NDArray[float64]
+    r: NDArray[float64]
+    rdot: NDArray[float64]
+    rddot: NDArray[float64]
+    A: NDArray[float64]
+    omega_bar: NDArray[float64]
+    omegadot_bar: NDArray[float64]
+    lambda_: NDArray[float64]
+    energy: NDArray[float64]
+    reaction_F: NDArray[float64] | None
+    reaction_T: NDArray[float64] | None
+    integrator: str
+    step: float | None
+    status: str
+    t_end: float
+    statistics: dict[str, int]
+    constraint_norm: float
+    warnings: list[str]
+
+    def __init__(self, core: _hilda._Model, outcome: dict[str, Any]) -> None:
+        rows = outcome["rows"]
+        self.reaction_F = self.reaction_T = None
+        for name, array in outcome["arrays"].items():
+            setattr(self, name, array[:rows])
+        self.bodies = core.bodies
+        self.model = core.name
+        for name in ("integrator", "step", "status", "t_end", "statistics", "constraint_norm", "warnings"):
+            setattr(self, name, outcome[name])
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getitem__(self, body: str | int) -> BodyResult:
+        """The rows of one body, by its name or number."""
+        return BodyResult(self, self.index(body))
+
+    def index(self, body: str | int) -> int:
+        """Number of a body in the arrays."""
+        if isinstance(body, str):
+            if body not in self.bodies:
+                raise KeyError(f"no body '{body}'; the bodies are {', '.join(self.bodies)}")
+            return self.bodies.index(body)
+        return range(len(self.bodies))[body]
+
+    def plot(self, body: str | int = -1, axes: Any = None) -> Any:
+        """Draws x, y and z of a body over time. Returns the matplotlib axes."""
+        if axes is None:
+            import matplotlib.pyplot as plt
+
+            axes = plt.subplots(layout="constrained")[1]
+        number = self.index(body)
+        for component, name in enumerate("xyz"):
+            axes.plot(self.t, self.r[:, number, component], label=name)
+        axes.set_xlabel("t [s]")
+        axes.set_ylabel(f"position of {self.bodies[number]} [m]")
+        axes.set_title(f"{self.model}, {self.integrator}")
+        axes.legend()
+        return axes
+
+    def __repr__(self) -> str:
+        return (f"<hilda.Result {self.model}, {self.integrator}: {len(self)} rows up to {self.t_end:g} s, "
+                f"status {self.status}>")
+
+
+class BodyResult:
+    """The rows of one body: views of the arrays of a Result, without the index of the body."""
+
+    t: NDArray[float64]
+    r: NDArray[float64]
+    rdot: NDArray[float64]
+    rddot: NDArray[float64]
+    A: NDArray[float64]
+    omega_bar: NDArray[float64]
+    omegadot_bar: NDArray[float64]
+    reaction_F: NDArray[float64] | None
+    reaction_T: NDArray[float64] | None
+
+    def __init__(self, result: Result, number: int) -> None:
+        self.name = result.bodies[number]
+        self.t = result.t
+        for name in ("r", "rdot", "rddot", "A", "omega_bar", "omegadot_bar", "reaction_F", "reaction_T"):
+            array = getattr(result, name)
+            setattr(self, name, None if array is None else array[:, number])

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Python examples of the documentation run."""
+
+import contextlib
+import io
+import pathlib
+import re
+import unittest
+
+import matplotlib
+
+matplotlib.use("Agg")
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+class Pages(unittest.TestCase):
+    def test_the_blocks_of_each_page_run_in_their_order(self):
+        pages = [page for page in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))] if "\nimport hilda\n" in page.read_text()]
+        self.assertTrue({ROOT / "README.md", ROOT / "docs/guide/python.md"} <= {*pages})
+        for page in pages:
+            names = {}
+            text = page.read_text()
+            for block in re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M):
+                line = text.count("\n", 0, block.start(1))
+                with self.subTest(page=page.name, line=line + 1), contextlib.redirect_stdout(io.StringIO()):
+                    exec(compile("\n" * line + block[1], str(page), "exec"), names)
+
+
+if __name__ == "__main__":
+    unittest.main()

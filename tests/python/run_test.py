@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs in Python: the numbers of the program, observers, failures, interruptions, threads."""
+
+import csv
+import os
+import pickle
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import hilda
+
+PROGRAM = os.environ["HILDA_PROGRAM"]
+
+
+class Rows(unittest.TestCase):
+    def check_as_program(self, model, *options, **keys):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([PROGRAM, "run", model, *options, "--quiet", "--output", folder + "/a"], check=True,
+                           capture_output=True)
+            with open(folder + "/a/trajectory.csv", encoding="utf-8") as file:
+                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        result = hilda.run(model, **keys)
+        self.assertEqual(len(rows), len(result))
+        body = result.bodies[-1]
+        for name, array in (("r", result[body].r), ("v", result[body].rdot), ("w", result[body].omega_bar)):
+            for k, axis in enumerate("xyz"):
+                column = next(c for c in rows[0] if c.startswith(f"{body}.{name}{axis}"))
+                np.testing.assert_array_equal([float(row[column]) for row in rows], array[:, k])
+
+    def test_rows_are_those_of_the_program(self):
+        self.check_as_program("double_pendulum", "--end", "0.5", end=0.5)
+        self.check_as_program("slider_crank", "--integrator", "rA-half-1", "--end", "0.5", "--step", "2e-3", "--interval", "0.02",
+                              integrator="rA-half-1", end=0.5, step=2e-3, interval=0.02)
+        self.check_as_program("double_pendulum_moving", "--integrator", "rA-dop853", "--rtol", "1e-8", "--end", "1", "--interval",
+                              "0.1", integrator="rA-dop853", rtol=1e-8, end=1, interval=0.1)
+
+    def test_shapes_and_invariants(self):
+        result = hilda.run("double_pendulum", end=1, reactions=True)
+        n = len(result.t)
+        self.assertEqual(n, 1001)
+        self.assertEqual(result.r.shape, (n, 2, 3))
+        self.assertEqual(result.A.shape, (n, 2, 3, 3))
+        self.assertEqual(result.lambda_.shape, (n, 10))
+        self.assertEqual(result.reaction_F.shape, (n, 2, 3))
+        product = np.einsum("nbki,nbkj->nbij", result.A, result.A)
+        self.assertLess(np.abs(product - np.eye(3)).max(), 1e-14)
+        self.assertLess(np.ptp(result.energy), 1e-4 * abs(result.energy[0]))
+        # Newton's second law: m r'' = m g + reaction
+        mass = hilda.Model("double_pendulum").to_dict()["bodies"][1]["mass"]
+        np.testing.assert_allclose(mass * (result.rddot[:, 1] - [0, 0, -9.81]), result.reaction_F[:, 1], atol=1e-9)
+
+    def test_the_arrays_are_not_copied_and_outlive_the_model(self):
+        model = hilda.Model("double_pendulum")
+        result = model.run(end=0.1)
+        del model
+        self.assertIsNotNone(result.r.base)  # a part of the array that the run has written
+        self.assertTrue(result.r.flags["C_CONTIGUOUS"])
+        self.assertTrue(np.isfinite(result.r).all())
+
+    def test_repeated_runs_are_equal(self):
+        model = hilda.Model("slider_crank")
+        np.testing.assert_array_equal(model.run(end=0.2).r, model.run(end=0.2).r)
+
+    def test_names_of_bodies(self):
+        result = hilda.run("slider_crank", end=0.01)
+        np.testing.assert_array_equal(result["slider"].r, result.r[:, result.bodies.index("slider")])
+        with self.assertRaisesRegex(KeyError, "no body 'rod2'; the bodies are "):
+            result["rod2"]
+
+
+    def test_events_are_refused(self):
+        model = hilda.Model({**hilda.Model("double_pendulum").to_dict(),
+                             "events": [{"name": "down", "value": "bar_1.rz", "action": "stop"}]})
+        with self.assertRaisesRegex(hilda.UsageError, "the model has events"):
+            model.run()
+
+    def test_an_end_between_two_steps_is_a_warning(self):
+        result = hilda.run("double_pendulum", end=0.0105, interval=0.0015)
+        self.assertIn("the end 0.0105 s is not a multiple of the step: the run ends at 0.011 s", result.warnings)
+
+
+class Observers(unittest.TestCase):
+    def test_an_observer_sees_the_nodes(self):
+        seen = []
+        result = hilda.run("double_pendulum", end=0.02, interval=0, observer=lambda x: seen.append((x.t, x.r[1].copy())))
+        np.testing.assert_array_equal([t for t, r in seen], result.t)
+        np.testing.assert_array_equal([r for t, r in seen], result.r[:, 1])
+
+    def test_an_observer_ends_the_run(self):
+        calls = []
+        for condition in (lambda x: x.t >= 0.5, lambda x: x.r[1, 2] < -1.2):  # a bool of Python, and one of NumPy
+            result = hilda.run("double_pendulum", observer=lambda x: calls.append(x.t) or condition(x), interval=0)
+            self.assertEqual(result.status, "stopped")
+            self.assertLess(abs(result.t_end - calls[-1]), 1.5e-3)
+            self.assertLess(result.t_end, 2)
+
+    def test_the_arrays_of_an_observer_are_read_only(self):
+        def write(x):
+            x.r[0, 0] = 1
+
+        with self.assertRaisesRegex(ValueError, "read-only") as raised:
+            hilda.run("double_pendulum", observer=write)
+        self.assertIn("in the observer at t = 0 s", raised.exception.__notes__)
+        self.assertEqual(raised.exception.result.status, "error")
+
+    def test_a_kept_state_stays_valid(self):
+        kept = []
+        hilda.run("double_pendulum", end=0.01, observer=lambda x: kept.append(x.copy()))
+        self.assertEqual([x.t for x in kept[:2]], [0, 1e-3])
+        kept[0].r[0] = [1, 2, 3]
+        self.assertEqual(kept[0].r[0, 2], 3)
+        arrays = []
+        result = hilda.run("double_pendulum", end=0.01, interval=0, observer=lambda x: arrays.append(x.r))
+        np.testing.assert_array_equal(arrays, result.r)
+
+    def test_a_part_of_the_rows_remains_after_an_exception(self):
+        def fail(x):
+            if x.t > 0.1:
+                raise KeyError("no more")
+
+        with self.assertRaises(KeyError) as raised:
+            hilda.run("double_pendulum", observer=fail)
+        result = raised.exception.result
+        self.assertGreater(len(result), 30)
+        self.assertLess(result.t[-1], 0.11)
+
+
+class Failures(unittest.TestCase):
+    def test_a_numerical_failure_has_its_status_and_the_rows(self):
+        model = hilda.Model("double_pendulum_moving")
+        with self.assertRaises(hilda.NumericalFailure) as raised:
+            model.run(step=0.4, end=30)
+        self.assertIn(raised.exception.status, ("newton_diverged", "step_too_large", "energy_created"))
+        self.assertEqual(raised.exception.result.status, raised.exception.status)
+        self.assertGreater(len(raised.exception.result), 0)
+
+    def test_options_that_do_not_fit(self):
+        for keys, text in (({"integrator": "rA-half-9"}, "an integrator must be one of .*got 'rA-half-9'"),
+                           ({"rtol": 1e-6}, "has a fixed step; rtol and atol are for integrators with adaptive steps"),
+                           ({"integrator": "ida-rp", "step": 1e-3}, "ida-rp: chooses its own steps by rtol and atol"),
+                           ({"integrator": "rA-dp-5", "step": 1e-3, "rtol": 1e-6}, "has a fixed step with step, and adaptive"),
+                           ({"integrator": "rA-dp-5", "interval": 0}, "interval must be positive, got 0"),
+                           ({"integrator": "rA-dp-5", "atol": -1}, "atol must be positive, got -1"),
+                           ({"rho_infinity": 0.5}, "does not use rho_infinity"),
+                           ({"integrator": "rA-genalpha", "rho_infinity": 2}, "rho_infinity must be from 0 to 1, got 2"),
+                           ({"tolerance": float("nan")}, "tolerance must be positive and finite, got nan"),
+                           ({"max_iterations": 0}, "max_iterations must be a positive integer, got 0"),
+                           ({"step": 0.0}, "the step h must be positive and finite"),
+                           ({"end": -1}, "the end time must be finite and not negative"),
+                           ({"linear_solver": "lu"}, "linear_solver must be auto, klu or condensed, got 'lu'"),
+                           ({"integrator": "rA-dp-5", "rtol": 1.0}, "rtol")):
+            with self.subTest(**keys), self.assertRaisesRegex((hilda.UsageError, hilda.InvalidInput), text):
+                hilda.run("double_pendulum", **keys)
+
+    def test_a_failure_can_be_passed_between_processes(self):
+        with self.assertRaises(hilda.NumericalFailure) as raised:
+            hilda.run("double_pendulum_moving", step=0.4, end=30)
+        copy = pickle.loads(pickle.dumps(raised.exception))
+        self.assertEqual((copy.status, str(copy)), (raised.exception.status, str(raised.exception)))
+        np.testing.assert_array_equal(copy.result.r, raised.exception.result.r)
+        model = hilda.Model("double_pendulum")
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(model)).run(end=0.1).r, model.run(end=0.1).r)
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(model)).run(end=0.1).r, model.run(end=0.1).r)
+
+    def test_a_step_above_the_stability_limit(self):
+        model = hilda.Model("double_pendulum_strut", set={"/forces/0/implicit": False})
+        with self.assertRaisesRegex(hilda.UsageError, "the stability limit of .* in an explicit step"):
+            model.run("rA-rattle", step=0.1)
+
+
+class Interruptions(unittest.TestCase):
+    def check_interrupted(self, **keys):
+        model = hilda.Model("double_pendulum")
+        model.report  # the model is read before the signal
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.process_time()
+        with self.assertRaises(KeyboardInterrupt) as raised:
+            model.run(**keys)
+        self.assertLess(time.process_time() - begin, 1.3)
+        self.assertEqual(raised.exception.result.status, "interrupted")
+        return raised.exception.result
+
+    def test_ctrl_c_ends_a_run_within_a_second(self):
+        result = self.check_interrupted(end=1e6, interval=1)
+        self.assertGreater(len(result), 1)
+        self.assertGreater(result.t_end, 0)
+
+    def test_ctrl_c_inside_of_an_adaptive_step(self):
+        self.check_interrupted(integrator="rA-dp-5", end=1e6, interval=1e6)
+
+    def test_other_threads_run_meanwhile(self):
+        results = [None, None]
+
+        def run(k):
+            results[k] = hilda.run(model, end=3)
+
+        model = hilda.Model("double_pendulum").force(lambda x: np.zeros((2, 3)))
+        alone = model.run(end=3)
+        threads = [threading.Thread(target=run, args=(k,)) for k in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for result in results:
+            np.testing.assert_array_equal(result.r, alone.r)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -6,6 +6,7 @@
 #include "python/bindings/model.hpp"
 #include "python/bindings/run.hpp"
 #include "python/bindings/state.hpp"
+#include "python/bindings/system.hpp"
 
 PYBIND11_MODULE(_hilda, m)
 {
@@ -14,5 +15,6 @@ PYBIND11_MODULE(_hilda, m)
     translate_exceptions();
     define_state(m);
     define_model(m);
+    define_system(m);
     define_run(m);
 }

@@ -8,6 +8,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "python/bindings/errors.hpp"
+#include "python/bindings/integrator.hpp"
 #include "python/bindings/model.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
@@ -25,7 +26,7 @@ namespace hilda::python {
 namespace {
 
 struct Options {
-    std::string integrator;
+    py::object integrator;  ///< the name of a scheme, or an object of hilda.Integrator
     double end, step, interval;
     bool adaptive;
     lie::Settings settings;
@@ -222,7 +223,9 @@ py::dict run(const ModelPointer& model, const Options& options)
 {
     const dae::Description& of = model->description;
     const dae::Model& system = *of.model;
-    const lie::Scheme* scheme = &lie::scheme(options.integrator);
+    const bool in_python = !py::isinstance<py::str>(options.integrator);
+    const lie::Scheme own = in_python ? scheme_of(options.integrator) : lie::Scheme();
+    const lie::Scheme* scheme = in_python ? &own : &lie::scheme(options.integrator.cast<std::string>());
     if (options.adaptive) scheme = &scheme->with_adaptive_steps();
     const lie::TimeGrid grid = scheme->adaptive
                                    ? lie::TimeGrid::over(options.end, options.interval)
@@ -244,7 +247,9 @@ py::dict run(const ModelPointer& model, const Options& options)
 
     lie::Settings settings = options.settings;
     settings.stop = &Signals::raised_in_run;
-    const auto integrator = contact::make_integrator(system, *scheme, settings);
+    const std::unique_ptr<lie::Integrator> integrator =
+        in_python ? std::make_unique<PythonIntegrator>(options.integrator, system)
+                  : contact::make_integrator(system, *scheme, settings);
     studies::Watch watch(system, of.x, *integrator, *scheme, grid, studies::Watch::Action::stop,
                          options.force);
     Rows rows(system, grid, options.reactions);
@@ -288,10 +293,10 @@ void define_run(py::module_& m)
 {
     m.def(
         "_run",
-        [](const ModelPointer& model, const std::string& integrator, double end, double step, double interval,
+        [](const ModelPointer& model, py::object integrator, double end, double step, double interval,
            bool adaptive, double rtol, double atol, double tolerance, int max_iterations,
            const std::string& solver, double rho_infinity, bool reactions, bool force, py::object observer) {
-            return run(model, {.integrator = integrator,
+            return run(model, {.integrator = std::move(integrator),
                                .end = end,
                                .step = step,
                                .interval = interval,

@@ -47,8 +47,13 @@ void define_state(py::module_& m)
     py::class_<StateObject, StatePointer>(m, "State", R"(The state of a mechanical system.
 
 The arrays share the memory of the state. Those of an observer or a force are read-only.)")
-        .def_property_readonly(
-            "t", [](const StateObject& s) { return s.x.t; }, "Time [s]")
+        .def_property(
+            "t", [](const StateObject& s) { return s.x.t; },
+            [](StateObject& s, double t) {
+                if (!s.writable) throw py::value_error("the state is read-only: use a copy, x.copy()");
+                s.x.t = t;
+            },
+            "Time [s]")
         .def_property_readonly("r", &vectors<&lie::Motion::r>,
                                "Positions of the centres of mass [m], global frame; shape (bodies, 3)")
         .def_property_readonly("rdot", &vectors<&lie::Motion::rdot>,
@@ -79,10 +84,14 @@ StatePool::Lent::Lent(StatePool& pool, const lie::State& x) : pool(pool)
         state = std::move(pool.free.back());
         pool.free.pop_back();
     }
+    state.cast<StateObject&>().writable = false;
     lie::State& to = state.cast<StateObject&>().x;
     to.t = x.t;
     to.body = x.body;
     to.lambda = x.lambda;
+    to.alpha = x.alpha;
+    to.discrete_state = x.discrete_state;
+    to.internal_state = x.internal_state;
 }
 
 StatePool::Lent::~Lent()

@@ -6,11 +6,12 @@
     result.plot()
 """
 
-from . import errors  # before the extension module, which raises them
-from ._hilda import State, __version__
+from . import errors, so3  # before the extension module, which raises them
+from ._hilda import Saddle, State, System, __version__
 from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailure, UsageError
+from .integrator import Integrator
 from .model import Model, integrators, problems, run
 from .result import BodyResult, Result
 
-__all__ = ["BodyResult", "Error", "FileError", "InvalidInput", "Model", "NotAvailable", "NumericalFailure", "Result",
-           "State", "UsageError", "__version__", "errors", "integrators", "problems", "run"]
+__all__ = ["BodyResult", "Error", "FileError", "Integrator", "InvalidInput", "Model", "NotAvailable", "NumericalFailure", "Result",
+           "Saddle", "State", "System", "UsageError", "__version__", "errors", "integrators", "problems", "run", "so3"]

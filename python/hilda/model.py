@@ -10,6 +10,7 @@ from typing import Any, Callable, Mapping
 from . import _hilda
 from ._hilda import State
 from .errors import InvalidInput, UsageError
+from .integrator import Integrator
 from .result import Result
 
 Source = str | os.PathLike[str] | dict[str, Any]
@@ -157,7 +158,7 @@ class Model:
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 
-    def run(self, integrator: str = DEFAULT_INTEGRATOR, *, end: float | None = None, step: float | None = None,
+    def run(self, integrator: str | type[Integrator] = DEFAULT_INTEGRATOR, *, end: float | None = None, step: float | None = None,
             interval: float | None = None, rtol: float | None = None, atol: float | None = None,
             tolerance: float = 1e-10, max_iterations: int = 30, linear_solver: str = "auto",
             rho_infinity: float | None = None, reactions: bool = False,
@@ -165,7 +166,7 @@ class Model:
         """Integrates the model and returns a Result.
 
         Args:
-            integrator: name of an integrator, see integrators().
+            integrator: name of an integrator, see integrators(), or a class derived from Integrator.
             end: end of the run [s]; default: that of the model.
             step: step [s]; default 1e-3 for integrators with a fixed step. Integrators with adaptive steps take
                 rtol and atol instead.
@@ -188,11 +189,13 @@ class Model:
         """
         core = self._core()
         scheme = _scheme(integrator)
+        name = scheme["name"]
+        used: str | Integrator = integrator if isinstance(integrator, str) else integrator(_hilda.System(core))
         adaptive = scheme["adaptive"] and step is None
 
         def require(condition: bool, text: str) -> None:
             if not condition:
-                raise UsageError(f"run: {integrator}: {text}")
+                raise UsageError(f"run: {name}: {text}")
 
         if step is not None:
             require(scheme["fixed_step"], "chooses its own steps by rtol and atol; step is for integrators with a fixed step")
@@ -209,7 +212,7 @@ class Model:
         if interval is None:
             interval = end / 1000 if end > 0 or not adaptive else 1e-3
         require(interval > 0 or not adaptive, f"chooses its own steps; interval must be positive, got {interval}")
-        outcome = _hilda._run(core, integrator, end, 1e-3 if step is None else float(step), float(interval), adaptive,
+        outcome = _hilda._run(core, used, end, 1e-3 if step is None else float(step), float(interval), adaptive,
                               1e-10 if rtol is None else float(rtol), 0.0 if atol is None else float(atol),
                               float(tolerance), int(max_iterations), linear_solver,
                               0.8 if rho_infinity is None else float(rho_infinity), bool(reactions), bool(force), observer)
@@ -234,7 +237,7 @@ class Model:
                 f"{report['degrees_of_freedom']} degrees of freedom>")
 
 
-def run(model: Model | Source, integrator: str = DEFAULT_INTEGRATOR, **options: Any) -> Result:
+def run(model: Model | Source, integrator: str | type[Integrator] = DEFAULT_INTEGRATOR, **options: Any) -> Result:
     """Integrates a model: a Model, the path of a model file, the name of a built-in model, or a dict.
 
     The options are those of Model.run().
@@ -252,7 +255,11 @@ def problems() -> dict[str, str]:
     return dict(_hilda._problems())
 
 
-def _scheme(name: str) -> dict[str, Any]:
+def _scheme(name: str | type[Integrator]) -> dict[str, Any]:
+    if isinstance(name, type):
+        if not issubclass(name, Integrator):
+            raise UsageError(f"run: the class {name.__name__} is not derived from hilda.Integrator")
+        return {"name": name.__name__, "adaptive": False, "fixed_step": True, "rho_infinity": False}
     for scheme in _hilda._integrators():
         if scheme["name"] == name:
             return scheme

@@ -11,7 +11,9 @@ from ._hilda import Saddle, State, System, __version__
 from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailure, UsageError
 from .integrator import Integrator
 from .model import Model, integrators, problems, run
+from .orders import Convergence, convergence
 from .result import BodyResult, Result
 
-__all__ = ["BodyResult", "Error", "FileError", "Integrator", "InvalidInput", "Model", "NotAvailable", "NumericalFailure", "Result",
-           "Saddle", "State", "System", "UsageError", "__version__", "errors", "integrators", "problems", "run", "so3"]
+__all__ = ["BodyResult", "Convergence", "Error", "FileError", "Integrator", "InvalidInput", "Model", "NotAvailable",
+           "NumericalFailure", "Result", "Saddle", "State", "System", "UsageError", "__version__", "convergence", "errors",
+           "integrators", "problems", "run", "so3"]

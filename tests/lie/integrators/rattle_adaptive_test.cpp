@@ -89,7 +89,7 @@ TEST_CASE("reversible steps need fewer steps near a centre of attraction, and th
     const AttractedTop system(0.02);
     const auto run = [&](const lie::Scheme& s, const lie::Settings& settings, double h, long& steps) {
         const auto integrator = s.make(system, settings);
-        const auto rows = lie::march(system.start(), *integrator, lie::TimeGrid::over(60, h)).row;
+        auto rows = lie::march(system.start(), *integrator, lie::TimeGrid::over(60, h)).row;
         steps = integrator->statistics().steps;
         return rows;
     };

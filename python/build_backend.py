@@ -10,25 +10,17 @@ import base64
 import hashlib
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
 import sys
 import sysconfig
-import tarfile
 import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / f"python-{sys.implementation.cache_tag}"
-
-
-def get_requires_for_build_wheel(config_settings=None):
-    return []
-
-
-def get_requires_for_build_sdist(config_settings=None):
-    return []
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
@@ -50,18 +42,14 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    project = metadata()
-    name = f"hilda-{project['version']}"
-    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    with tarfile.open(pathlib.Path(sdist_directory) / f"{name}.tar.gz", "w:gz") as archive:
-        for path in listed.splitlines():
-            archive.add(ROOT / path, f"{name}/{path}")
-    return f"{name}.tar.gz"
+    raise SystemExit("hilda: error: there is no source distribution; install from a clone of the repository")
 
 
 def metadata():
-    """The table [project] of pyproject.toml."""
-    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    """The table [project] of pyproject.toml, with the version of the library."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    version = re.search(r"project\(hilda VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())
+    return {**project, "version": version[1]}
 
 
 def compile_module():
@@ -94,7 +82,7 @@ def wheel_information(project):
     """The folder .dist-info of the wheel, and the texts of its files by path."""
     info = f"hilda-{project['version']}.dist-info"
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {project['version']}",
-             f"Summary: {project['description']}", "License: GPL-3.0-or-later", f"Requires-Python: {project['requires-python']}",
+             f"Summary: {project['description']}", f"License: {project['license']['text']}", f"Requires-Python: {project['requires-python']}",
              *(f"Requires-Dist: {package}" for package in project["dependencies"])]
     texts = {f"{info}/METADATA": "\n".join(lines) + "\n\n" + (ROOT / "README.md").read_text(),
              f"{info}/WHEEL": f"Wheel-Version: 1.0\nGenerator: hilda\nRoot-Is-Purelib: false\nTag: {wheel_tag()}\n",

@@ -18,41 +18,29 @@ py::object error_class(const char* name) { return py::module_::import("hilda.err
 void translate_exceptions()
 {
     py::register_exception_translator([](std::exception_ptr thrown) {
-        const auto raise = [](const std::exception& error) {
-            const py::object of_python = python_error(error);
-            PyErr_SetObject(py::type::of(of_python).ptr(), of_python.ptr());
-        };
-        try {
-            if (thrown) std::rethrow_exception(std::move(thrown));
-        } catch (const io::NumericalFailure& error) {
-            raise(error);
-        } catch (const io::InvalidInput& error) {
-            raise(error);
-        } catch (const io::ExpressionError& error) {
-            raise(error);
-        } catch (const io::Failure& error) {
-            raise(error);
-        }
+        if (thrown == nullptr) return;
+        const py::object error = python_error(std::move(thrown));
+        PyErr_SetObject(py::type::of(error).ptr(), error.ptr());
     });
 }
 
-py::object python_error(const std::exception& error)
+py::object python_error(std::exception_ptr thrown)
 {
-    const auto is = [&](auto* type) { return dynamic_cast<decltype(type)>(&error) != nullptr; };
-    if (const auto* failure = dynamic_cast<const io::NumericalFailure*>(&error))
-        return numerical_failure(*failure, failure->what());
-    const char* name = nullptr;
-    if (is(static_cast<const io::InvalidInput*>(nullptr)) ||
-        is(static_cast<const io::ExpressionError*>(nullptr)))
-        name = "InvalidInput";
-    else if (is(static_cast<const io::UsageError*>(nullptr)))
-        name = "UsageError";
-    else if (is(static_cast<const io::IoError*>(nullptr)))
-        name = "FileError";
-    else if (is(static_cast<const io::NotAvailable*>(nullptr)))
-        name = "NotAvailable";
-    if (name != nullptr) return error_class(name)(error.what());
-    return py::module_::import("builtins").attr("RuntimeError")(error.what());
+    try {
+        std::rethrow_exception(std::move(thrown));
+    } catch (const io::NumericalFailure& error) {
+        return numerical_failure(error, error.what());
+    } catch (const io::InvalidInput& error) {
+        return error_class("InvalidInput")(error.what());
+    } catch (const io::ExpressionError& error) {
+        return error_class("InvalidInput")(error.what());
+    } catch (const io::UsageError& error) {
+        return error_class("UsageError")(error.what());
+    } catch (const io::IoError& error) {
+        return error_class("FileError")(error.what());
+    } catch (const io::NotAvailable& error) {
+        return error_class("NotAvailable")(error.what());
+    }
 }
 
 py::object numerical_failure(const io::NumericalFailure& failure, const std::string& text)

@@ -5,6 +5,9 @@
 
 #include <pybind11/pybind11.h>
 
+#include <exception>
+#include <string>
+
 namespace hilda::io {
 class NumericalFailure;
 }
@@ -20,8 +23,8 @@ void translate_exceptions();
 /// hilda.errors.NumericalFailure with the status and the text
 py::object numerical_failure(const io::NumericalFailure& failure, const std::string& text);
 
-/// The exception of Python for an exception of the library or of C++
-py::object python_error(const std::exception& error);
+/// The exception of Python for one of the library. Other exceptions are thrown again.
+py::object python_error(std::exception_ptr thrown);
 
 /// Adds a line to an exception of Python: the place where it was raised.
 void add_note(const py::error_already_set& error, const std::string& note);

@@ -80,8 +80,6 @@ py::dict properties(const lie::Scheme& scheme)
     all["formulation"] = scheme.formulation;
     all["source"] = scheme.source;
     all["adaptive"] = scheme.adaptive || scheme.adaptive_form != nullptr;
-    all["fixed_step"] = !scheme.adaptive;
-    all["rho_infinity"] = scheme.rho_infinity;
     return all;
 }
 

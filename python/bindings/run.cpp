@@ -12,7 +12,10 @@
 #include "python/bindings/model.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
+#include "studies/framework/study.hpp"
+#include "studies/program/command_options.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/run_settings.hpp"
 #include "studies/running/watch/run_check.hpp"
 #include "studies/running/watch/watch.hpp"
 
@@ -20,6 +23,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
 namespace hilda::python {
 
@@ -27,9 +32,9 @@ namespace {
 
 struct Options {
     py::object integrator;  ///< the name of a scheme, or an object of hilda.Integrator
-    double end, step, interval;
-    bool adaptive;
-    lie::Settings settings;
+    std::optional<double> end, step, interval;
+    std::map<std::string, std::string>
+        settings;  ///< values of studies::setting_options(), without the dashes
     bool reactions, force;
     py::object observer;
 };
@@ -197,9 +202,9 @@ Outcome advance(lie::March& run, const lie::Integrator& integrator, const lie::T
     } catch (const py::error_already_set& error) {
         out.status = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
         out.error = with_traceback(error);
-    } catch (const std::exception& error) {
+    } catch (const std::exception&) {
         out.status = "error";
-        out.error = python_error(error);
+        out.error = python_error(std::current_exception());
     }
     if (signals.error()) {
         out.status = "interrupted";
@@ -219,6 +224,22 @@ py::dict counters(const lie::Statistics& of)
     return all;
 }
 
+lie::Settings settings_of(const lie::Scheme& scheme, const Options& options)
+{
+    lie::Settings settings;
+    settings.stop = &Signals::raised_in_run;
+    std::vector<std::string> given;
+    for (const studies::SettingOption& option : studies::setting_options())
+        if (const auto value = options.settings.find(option.name.substr(2));
+            value != options.settings.end()) {
+            option.set(settings, option.name, value->second);
+            given.push_back(option.name);
+        }
+    studies::check_step_options(scheme, given, options.step.has_value(), options.interval);
+    studies::refuse_unused_settings("run", given, {&scheme});
+    return settings;
+}
+
 py::dict run(const ModelPointer& model, const Options& options)
 {
     const dae::Description& of = model->description;
@@ -226,10 +247,10 @@ py::dict run(const ModelPointer& model, const Options& options)
     const bool in_python = !py::isinstance<py::str>(options.integrator);
     const lie::Scheme own = in_python ? scheme_of(options.integrator) : lie::Scheme();
     const lie::Scheme* scheme = in_python ? &own : &lie::scheme(options.integrator.cast<std::string>());
-    if (options.adaptive) scheme = &scheme->with_adaptive_steps();
-    const lie::TimeGrid grid = scheme->adaptive
-                                   ? lie::TimeGrid::over(options.end, options.interval)
-                                   : lie::TimeGrid::over(options.end, options.step, options.interval);
+    if (!options.step) scheme = &scheme->with_adaptive_steps();
+    const double end = options.end.value_or(of.end);
+    const lie::Settings settings = settings_of(*scheme, options);
+    const lie::TimeGrid grid = studies::time_grid(*scheme, end, options.step, options.interval);
     std::vector<std::string> warnings = of.warnings;
     if (!of.events.empty())
         throw io::UsageError(
@@ -239,14 +260,12 @@ py::dict run(const ModelPointer& model, const Options& options)
         warnings.push_back(row + ": redundant with the constraints before it, dropped from the equations");
     for (std::string& warning : contact::soft_friction_warnings(system, of.x))
         warnings.push_back(std::move(warning));
-    for (std::string& warning : studies::grid_warnings(grid, options.end, options.interval, *scheme))
+    for (std::string& warning : studies::grid_warnings(grid, end, options.interval.value_or(0), *scheme))
         warnings.push_back(std::move(warning));
     if (std::string warning = studies::check_run(system, of.x, *scheme, grid, options.force);
         !warning.empty())
         warnings.push_back(std::move(warning));
 
-    lie::Settings settings = options.settings;
-    settings.stop = &Signals::raised_in_run;
     const std::unique_ptr<lie::Integrator> integrator =
         in_python ? std::make_unique<PythonIntegrator>(options.integrator, system)
                   : contact::make_integrator(system, *scheme, settings);
@@ -279,42 +298,21 @@ py::dict run(const ModelPointer& model, const Options& options)
     return result;
 }
 
-lie::LinearSolver linear_solver(const std::string& name)
-{
-    if (name == "auto") return lie::LinearSolver::automatic;
-    if (name == "klu") return lie::LinearSolver::klu;
-    if (name == "condensed") return lie::LinearSolver::condensed;
-    throw io::InvalidInput("run: linear_solver must be auto, klu or condensed, got '" + name + "'");
-}
-
 }  // namespace
 
 void define_run(py::module_& m)
 {
+    m.attr("default_integrator") = studies::default_integrator;
     m.def(
         "_run",
-        [](const ModelPointer& model, py::object integrator, double end, double step, double interval,
-           bool adaptive, double rtol, double atol, double tolerance, int max_iterations,
-           const std::string& solver, double rho_infinity, bool reactions, bool force, py::object observer) {
-            return run(model, {.integrator = std::move(integrator),
-                               .end = end,
-                               .step = step,
-                               .interval = interval,
-                               .adaptive = adaptive,
-                               .settings = {.tolerance = tolerance,
-                                            .max_iterations = max_iterations,
-                                            .linear_solver = linear_solver(solver),
-                                            .rho_infinity = rho_infinity,
-                                            .rtol = rtol,
-                                            .atol = atol},
-                               .reactions = reactions,
-                               .force = force,
-                               .observer = std::move(observer)});
+        [](const ModelPointer& model, py::object integrator, std::optional<double> end,
+           std::optional<double> step, std::optional<double> interval,
+           std::map<std::string, std::string> settings, bool reactions, bool force, py::object observer) {
+            return run(model, {std::move(integrator), end, step, interval, std::move(settings), reactions,
+                               force, std::move(observer)});
         },
         py::arg("model"), py::arg("integrator"), py::arg("end"), py::arg("step"), py::arg("interval"),
-        py::arg("adaptive"), py::arg("rtol"), py::arg("atol"), py::arg("tolerance"),
-        py::arg("max_iterations"), py::arg("linear_solver"), py::arg("rho_infinity"), py::arg("reactions"),
-        py::arg("force"), py::arg("observer"));
+        py::arg("settings"), py::arg("reactions"), py::arg("force"), py::arg("observer"));
 }
 
 }  // namespace hilda::python

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/bindings/state.hpp"
 
+#include "lie/steps/state_numbers.hpp"
+
 namespace hilda::python {
 
 namespace {
@@ -84,14 +86,9 @@ StatePool::Lent::Lent(StatePool& pool, const lie::State& x) : pool(pool)
         state = std::move(pool.free.back());
         pool.free.pop_back();
     }
-    state.cast<StateObject&>().writable = false;
-    lie::State& to = state.cast<StateObject&>().x;
-    to.t = x.t;
-    to.body = x.body;
-    to.lambda = x.lambda;
-    to.alpha = x.alpha;
-    to.discrete_state = x.discrete_state;
-    to.internal_state = x.internal_state;
+    auto& to = state.cast<StateObject&>();
+    to.writable = false;
+    lie::copy(x, to.x);
 }
 
 StatePool::Lent::~Lent()

@@ -2,6 +2,7 @@
 #include "python/bindings/system.hpp"
 
 #include "dae/model.hpp"
+#include "io/error.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/projection.hpp"
@@ -159,10 +160,9 @@ M v' + C^T lambda = (F, n_bar - omega_bar x J omega_bar),   Phi(r, A, t) = 0,   
             const lie::Rows& C = model->description.model->pattern();
             if (C.algebraic_variables() > 0 || C.velocity_rows > 0 || !C.unilateral.empty() ||
                 model->description.model->keeps_redundant_rows())
-                throw py::value_error(
-                    "integrators in Python take models without contacts as constraints, rolling without slip "
-                    "and "
-                    "redundant rows");
+                throw io::InvalidInput(
+                    "integrators in Python take models without contacts as constraints, "
+                    "rolling without slip and redundant rows");
             return std::make_shared<SystemObject>(model);
         }))
         .def_property_readonly("bodies", &bodies, "Number of bodies")

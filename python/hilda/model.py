@@ -15,8 +15,6 @@ from .result import Result
 
 Source = str | os.PathLike[str] | dict[str, Any]
 
-DEFAULT_INTEGRATOR = "rA-half-1-momentum"
-
 
 class Model:
     """A mechanism: bodies, constraints, forces and contacts.
@@ -158,10 +156,10 @@ class Model:
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 
-    def run(self, integrator: str | type[Integrator] = DEFAULT_INTEGRATOR, *, end: float | None = None, step: float | None = None,
-            interval: float | None = None, rtol: float | None = None, atol: float | None = None,
-            tolerance: float = 1e-10, max_iterations: int = 30, linear_solver: str = "auto",
-            rho_infinity: float | None = None, reactions: bool = False,
+    def run(self, integrator: str | type[Integrator] = _hilda.default_integrator, *, end: float | None = None,
+            step: float | None = None, interval: float | None = None, rtol: float | None = None,
+            atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
+            linear_solver: str | None = None, rho_infinity: float | None = None, reactions: bool = False,
             observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
         """Integrates the model and returns a Result.
 
@@ -172,8 +170,8 @@ class Model:
                 rtol and atol instead.
             interval: time between rows of the result [s]; default: end/1000, 0: a row for each step.
             rtol, atol: tolerances of integrators with adaptive steps; default 1e-10, and atol = rtol.
-            tolerance, max_iterations: of Newton's method.
-            linear_solver: "auto", "klu" or "condensed".
+            tolerance, max_iterations: of Newton's method; default 1e-10 and 30.
+            linear_solver: "auto", the default, "klu" or "condensed".
             rho_infinity: numerical damping from 0 to 1, default 0.8, of integrators that have it.
             reactions: store the constraint forces and torques on each body.
             observer: function of the State of each node (each row, with adaptive steps). The run ends if it
@@ -188,34 +186,18 @@ class Model:
             NumericalFailure: with the rows up to the failure as attribute `result`.
         """
         core = self._core()
-        scheme = _scheme(integrator)
-        name = scheme["name"]
-        used: str | Integrator = integrator if isinstance(integrator, str) else integrator(_hilda.System(core))
-        adaptive = scheme["adaptive"] and step is None
-
-        def require(condition: bool, text: str) -> None:
-            if not condition:
-                raise UsageError(f"run: {name}: {text}")
-
-        if step is not None:
-            require(scheme["fixed_step"], "chooses its own steps by rtol and atol; step is for integrators with a fixed step")
-        if rtol is not None or atol is not None:
-            require(scheme["adaptive"], "has a fixed step; rtol and atol are for integrators with adaptive steps")
-            require(adaptive, "has a fixed step with step, and adaptive steps with rtol and atol; give one of them")
-        if rho_infinity is not None:
-            require(scheme["rho_infinity"], "does not use rho_infinity")
-            require(0 <= rho_infinity <= 1, f"rho_infinity must be from 0 to 1, got {rho_infinity}")
-        require(0 < tolerance < float("inf"), f"tolerance must be positive and finite, got {tolerance}")
-        require(1 <= max_iterations < 2**31, f"max_iterations must be a positive integer, got {max_iterations}")
-        require(atol is None or atol > 0, f"atol must be positive, got {atol}")
-        end = core.end if end is None else float(end)
-        if interval is None:
-            interval = end / 1000 if end > 0 or not adaptive else 1e-3
-        require(interval > 0 or not adaptive, f"chooses its own steps; interval must be positive, got {interval}")
-        outcome = _hilda._run(core, used, end, 1e-3 if step is None else float(step), float(interval), adaptive,
-                              1e-10 if rtol is None else float(rtol), 0.0 if atol is None else float(atol),
-                              float(tolerance), int(max_iterations), linear_solver,
-                              0.8 if rho_infinity is None else float(rho_infinity), bool(reactions), bool(force), observer)
+        used: str | Integrator
+        if isinstance(integrator, str):
+            used = integrator
+        elif isinstance(integrator, type) and issubclass(integrator, Integrator):
+            used = integrator(_hilda.System(core))
+        else:
+            raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
+        settings = {"tolerance": tolerance, "max-iterations": max_iterations, "linear-solver": linear_solver,
+                    "rho-infinity": rho_infinity, "rtol": rtol, "atol": atol}
+        outcome = _hilda._run(core, used, end, step, interval,
+                              {name: str(value) for name, value in settings.items() if value is not None},
+                              reactions, force, observer)
         error = outcome.pop("error")
         result = Result(core, outcome)
         if error is None:
@@ -237,7 +219,7 @@ class Model:
                 f"{report['degrees_of_freedom']} degrees of freedom>")
 
 
-def run(model: Model | Source, integrator: str | type[Integrator] = DEFAULT_INTEGRATOR, **options: Any) -> Result:
+def run(model: Model | Source, integrator: str | type[Integrator] = _hilda.default_integrator, **options: Any) -> Result:
     """Integrates a model: a Model, the path of a model file, the name of a built-in model, or a dict.
 
     The options are those of Model.run().
@@ -253,17 +235,6 @@ def integrators() -> dict[str, dict[str, Any]]:
 def problems() -> dict[str, str]:
     """The built-in models, as a dict from their names to their descriptions."""
     return dict(_hilda._problems())
-
-
-def _scheme(name: str | type[Integrator]) -> dict[str, Any]:
-    if isinstance(name, type):
-        if not issubclass(name, Integrator):
-            raise UsageError(f"run: the class {name.__name__} is not derived from hilda.Integrator")
-        return {"name": name.__name__, "adaptive": False, "fixed_step": True, "rho_infinity": False}
-    for scheme in _hilda._integrators():
-        if scheme["name"] == name:
-            return scheme
-    raise UsageError("run: an integrator must be one of " + ", ".join(integrators()) + f"; got '{name}'")
 
 
 def _json(value: Any) -> Any:

@@ -12,7 +12,21 @@ if TYPE_CHECKING:
     from . import _hilda
 
 
-class Result:
+class Motions:
+    """The arrays of all bodies, or of one."""
+
+    t: NDArray[float64]
+    r: NDArray[float64]
+    rdot: NDArray[float64]
+    rddot: NDArray[float64]
+    A: NDArray[float64]
+    omega_bar: NDArray[float64]
+    omegadot_bar: NDArray[float64]
+    reaction_F: NDArray[float64] | None
+    reaction_T: NDArray[float64] | None
+
+
+class Result(Motions):
     """The rows of a run. Arrays have the time as first index, and are not copied.
 
     Attributes:
@@ -36,17 +50,8 @@ class Result:
         warnings: warnings of the model and of the run.
     """
 
-    t: NDArray[float64]
-    r: NDArray[float64]
-    rdot: NDArray[float64]
-    rddot: NDArray[float64]
-    A: NDArray[float64]
-    omega_bar: NDArray[float64]
-    omegadot_bar: NDArray[float64]
     lambda_: NDArray[float64]
     energy: NDArray[float64]
-    reaction_F: NDArray[float64] | None
-    reaction_T: NDArray[float64] | None
     integrator: str
     step: float | None
     status: str
@@ -100,22 +105,11 @@ class Result:
                 f"status {self.status}>")
 
 
-class BodyResult:
+class BodyResult(Motions):
     """The rows of one body: views of the arrays of a Result, without the index of the body."""
-
-    t: NDArray[float64]
-    r: NDArray[float64]
-    rdot: NDArray[float64]
-    rddot: NDArray[float64]
-    A: NDArray[float64]
-    omega_bar: NDArray[float64]
-    omegadot_bar: NDArray[float64]
-    reaction_F: NDArray[float64] | None
-    reaction_T: NDArray[float64] | None
 
     def __init__(self, result: Result, number: int) -> None:
         self.name = result.bodies[number]
-        self.t = result.t
-        for name in ("r", "rdot", "rddot", "A", "omega_bar", "omegadot_bar", "reaction_F", "reaction_T"):
+        for name in Motions.__annotations__:
             array = getattr(result, name)
-            setattr(self, name, None if array is None else array[:, number])
+            setattr(self, name, array if array is None or name == "t" else array[:, number])

@@ -8,6 +8,7 @@
 #include "studies/framework/study.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/single_run.hpp"
+#include "studies/running/watch/run_check.hpp"
 
 #include <iostream>
 
@@ -41,19 +42,12 @@ void refuse_for_adaptive(const RunOptions& options)
     for (const std::string& name : options.integrators) {
         const lie::Scheme& scheme = scheme_of(name, options);
         const auto refuse = [&](const std::string& why) { throw io::UsageError("run: " + name + " " + why); };
-        for (const std::string& option : options.given_settings)
-            if (options.step && scheme.adaptive_form && (option == "--rtol" || option == "--atol"))
-                refuse("has a fixed step with --step, and adaptive steps with " + option +
-                       "; give one of them");
+        check_step_options(scheme, options.given_settings, options.step.has_value(), options.interval);
         if (!scheme.adaptive) continue;
-        if (options.step)
-            refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
         if (!scheme.resumes && (options.resume || options.checkpoint > 0))
             refuse(
                 "stores past steps outside the state; --checkpoint and --resume are for fixed-step schemes");
         if (options.error) refuse("chooses its own steps; --error is for fixed-step schemes");
-        if (options.interval && *options.interval == 0)
-            refuse("chooses its own steps; --interval must be positive, got 0");
     }
 }
 

@@ -36,19 +36,6 @@ constexpr const char* interval_option = "--interval";
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-/// Time grid of a run. For an adaptive scheme each node is an output row. `earlier` is the interval of the
-/// rows of a run that is continued with an adaptive scheme.
-lie::TimeGrid grid_of(const RunOptions& options, double end, bool adaptive, std::optional<double> earlier)
-{
-    const double interval = options.interval.value_or(earlier.value_or(end / 1000));
-    try {
-        if (adaptive) return lie::TimeGrid::over(end, interval > 0 ? interval : default_step);
-        return lie::TimeGrid::over(end, options.step.value_or(default_step), interval);
-    } catch (const lie::InvalidInput& error) {
-        throw io::UsageError(error.what());
-    }
-}
-
 std::string event_name(contact::ContactEvent::Type type)
 {
     using Type = contact::ContactEvent::Type;
@@ -156,9 +143,10 @@ void SingleRun::read()
     }
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
-    std::optional<double> earlier;  // interval
-    if (from && scheme.adaptive) earlier = io::number_in<double>(from->settings[interval_option]);
-    grid = grid_of(options, result.end, scheme.adaptive, earlier);
+    std::optional<double> interval = options.interval;
+    if (!interval && from && scheme.adaptive)
+        interval = io::number_in<double>(from->settings[interval_option]);
+    grid = time_grid(scheme, result.end, options.step, interval);
     if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
     for (const std::string& warning : grid_warnings(grid, result.end, options.interval.value_or(0), scheme))
         warn(warning);

@@ -4,6 +4,7 @@
 #include "dae/model.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
+#include "studies/running/run_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -21,6 +22,33 @@ std::string rounded_down(double positive)
 }
 
 }  // namespace
+
+void check_step_options(const lie::Scheme& scheme, const std::vector<std::string>& settings, bool has_step,
+                        std::optional<double> interval)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw io::UsageError("run: " + scheme.name + " " + why);
+    };
+    for (const std::string& option : settings)
+        if (has_step && scheme.adaptive_form && (option == "--rtol" || option == "--atol"))
+            refuse("has a fixed step with --step, and adaptive steps with " + option + "; give one of them");
+    if (!scheme.adaptive) return;
+    if (has_step) refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
+    if (interval && *interval == 0) refuse("chooses its own steps; --interval must be positive, got 0");
+}
+
+lie::TimeGrid time_grid(const lie::Scheme& scheme, double end, std::optional<double> step,
+                        std::optional<double> interval)
+{
+    const double spacing = interval.value_or(end / 1000);
+    try {
+        if (scheme.adaptive)
+            return lie::TimeGrid::over(end, interval || spacing > 0 ? spacing : default_step);
+        return lie::TimeGrid::over(end, step.value_or(default_step), spacing);
+    } catch (const lie::InvalidInput& error) {
+        throw io::UsageError(error.what());
+    }
+}
 
 std::vector<std::string> grid_warnings(const lie::TimeGrid& grid, double end, double interval,
                                        const lie::Scheme& scheme)

@@ -5,6 +5,7 @@
 
 #include "lie/trajectory.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,16 @@ struct Scheme;
 }
 
 namespace hilda::studies {
+
+/// io::UsageError "run: NAME ..." for settings (such as --rtol), a step and an output interval that do not
+/// fit the scheme. `scheme` has adaptive steps unless a step is given or it has none.
+void check_step_options(const lie::Scheme& scheme, const std::vector<std::string>& settings, bool has_step,
+                        std::optional<double> interval);
+
+/// The time grid of a run: for an adaptive scheme each node is an output row. Without a step it is that of
+/// default_step, without an interval a row for each 1/1000 of the end. io::UsageError.
+lie::TimeGrid time_grid(const lie::Scheme& scheme, double end, std::optional<double> step,
+                        std::optional<double> interval);
 
 /// Warnings if the end [s] or the output interval [s] is not a multiple of the step; interval 0: none given
 std::vector<std::string> grid_warnings(const lie::TimeGrid& grid, double end, double interval,

@@ -4,33 +4,27 @@
 
 #pragma once
 
-#include <complex>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace hilda::lie {
 
-/// Scalar is double or std::complex<double>.
-template <class Scalar>
-class BasicKlu {
+class Klu {
 public:
     /// Whether KLU scales the rows. `none` is for a matrix that has been scaled on both sides. Its reciprocal
     /// condition is meaningful: factor() also rejects matrices that are singular to working precision.
     enum class Scaling { none, rows };
 
-    explicit BasicKlu(Scaling scaling);
-    ~BasicKlu();
+    explicit Klu(Scaling scaling);
+    ~Klu();
 
     /// Sets the pattern in compressed columns. The rows of a column are distinct, in any order. Throws
     /// SingularMatrix if the matrix is singular for all values.
-    ///
-    /// With an `order`, the pivots are the diagonal entries in this order: use factor_in_order(). No pivot
-    /// may be zero.
-    void analyse(std::vector<int> column_start, std::vector<int> row_index, std::vector<int> order = {});
+    void analyse(std::vector<int> column_start, std::vector<int> row_index);
 
     /// The values, in the order of row_index
-    std::vector<Scalar> value;
+    std::vector<double> value;
 
     /// Factors the values with the pivots of the last full factorisation. Returns false if there is none, or
     /// if the reciprocal condition is below 1e-3 of that of the full factorisation. Call factor() then.
@@ -39,12 +33,8 @@ public:
     /// finite. `what` is the name of the matrix for the message.
     void factor(const char* what);
 
-    /// Factors the values with the diagonal pivots in the order of analyse(). Throws SingularMatrix if one of
-    /// them is zero, and NonFinite for values that are not finite.
-    void factor_in_order(const char* what);
-
     /// Solves in place; b has size() components.
-    void solve(Scalar* b) const;
+    void solve(double* b) const;
 
     int size() const { return static_cast<int>(column_start.size()) - 1; }
     const std::vector<int>& columns() const { return column_start; }
@@ -66,10 +56,5 @@ private:
     long full_count = 0, refactor_count = 0;
     bool have_pivots = false;
 };
-
-extern template class BasicKlu<double>;
-extern template class BasicKlu<std::complex<double>>;
-
-using Klu = BasicKlu<double>;
 
 }  // namespace hilda::lie

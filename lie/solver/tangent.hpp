@@ -5,7 +5,7 @@
 
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
-#include "lie/solver/newton_matrix.hpp"
+#include "lie/solver/multifrontal_lu.hpp"
 
 #include <vector>
 
@@ -88,17 +88,17 @@ public:
 
     /// Sets the values from the tangent and from `rotation`.
     void assemble(Scalar d, Scalar k, Scalar p);
-    void factor() { N.factor_in_order(); }
-    void solve(Vector& b) const { N.solve(b); }
+    void factor() { N.factor(); }
+    void solve(Vector& b) { N.solve(b); }
 
-    const BasicNewtonMatrix<Scalar>& matrix() const { return N; }
+    const MultifrontalLu<Scalar>& matrix() const { return N; }
 
     std::vector<Matrix3> rotation;  ///< P of the rotation of each body
 
 private:
     const Tangent& tangent;
     const Constraints constraints;
-    BasicNewtonMatrix<Scalar> N;
+    MultifrontalLu<Scalar> N;
     // handles of the blocks of N
     std::vector<int> block_at, row_at, column_at, inactive_at;
 };

@@ -136,7 +136,7 @@ int RadauStep::step(State& x, double h)
 Statistics RadauStep::statistics() const
 {
     Statistics all = statistics_with(K);
-    all.refactorizations += N.matrix().refactorizations() + N_complex.matrix().refactorizations();
+    all.refactorizations += N.matrix().factorizations() + N_complex.matrix().factorizations();
     return all;
 }
 
@@ -339,7 +339,7 @@ RadauStep::NewtonSystem<Scalar>::NewtonSystem(int bodies, int rows) : b(6 * bodi
 }
 
 template <class Scalar>
-void RadauStep::NewtonSystem<Scalar>::solve(const Tangent& tangent, const TangentMatrix<Scalar>& N, double h,
+void RadauStep::NewtonSystem<Scalar>::solve(const Tangent& tangent, TangentMatrix<Scalar>& N, double h,
                                             Scalar mu)
 {
     const auto times_P = [&](const Vector& from, Vector& to) {

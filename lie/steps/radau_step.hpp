@@ -104,7 +104,7 @@ private:
 
         NewtonSystem(int bodies, int rows);
         /// Sets the corrections.
-        void solve(const Tangent& tangent, const TangentMatrix<Scalar>& N, double h, Scalar mu);
+        void solve(const Tangent& tangent, TangentMatrix<Scalar>& N, double h, Scalar mu);
     };
     Tangent tangent;
     bool tangent_is_current = false;

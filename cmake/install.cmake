@@ -133,7 +133,7 @@ install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTAL
 install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL
-    FILES_MATCHING PATTERN "*.py")
+    FILES_MATCHING REGEX "[.](py|js|html)$")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"

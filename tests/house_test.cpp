@@ -121,6 +121,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "framework",
       "kinematics",
       "plots",
+      "plots/viewer",
       "problems",
       "program",
       "running",

@@ -17,6 +17,7 @@
 #include "studies/program/plugin.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/program/study_commands.hpp"
+#include "studies/running/frames/view.hpp"
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 
@@ -69,6 +70,7 @@ public:
         add_reproduce();
         add_granular();
         add_plot();
+        add_view();
         add_info();
         add_new();
         add_help();
@@ -229,6 +231,13 @@ private:
         add_plot_options(*c, directory, figures);
     }
 
+    void add_view()
+    {
+        add_view_options(*add("view", "write a page that animates the result of a run in a browser",
+                              [this] { return view(shown); }),
+                         shown);
+    }
+
     void add_info()
     {
         CLI::App* c = add("info", "print version, build, libraries and system, for bug reports",
@@ -333,6 +342,7 @@ private:
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;
     FigureOptions figures;  ///< of hilda plot
+    ViewOptions shown;
     bool json = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };

@@ -164,4 +164,22 @@ void add_plot_options(CLI::App& c, std::string& directory, FigureOptions& figure
            append(figures.quantities, list));
 }
 
+void add_view_options(CLI::App& c, ViewOptions& to)
+{
+    c.add_option("DIR", to.directory, "output directory of a run, a co-simulation or a granular run")
+        ->required()
+        ->type_name("");
+    value(c, "--output", "FILE", "the page; default: view.html in DIR", assign(to.output, io::path));
+    value(c, "--frames", "N", "show at most N rows or frames, evenly chosen (default 1000)",
+          assign(to.frames, [](const std::string& option, const std::string& text) {
+              return io::count_up_to(100000, option, text);
+          }));
+    c.add_flag("--serve", to.serve,
+               "serve the page on 127.0.0.1 until Ctrl-C; it follows a run that goes on");
+    value(c, "--port", "N", "port of --serve (default 8000; 0: any free one)",
+          assign(to.port, [](const std::string& option, const std::string& text) {
+              return text == "0" ? 0 : io::count_up_to(65535, option, text);
+          }));
+}
+
 }  // namespace hilda::studies

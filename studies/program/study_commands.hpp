@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The options of the commands study, reproduce and plot.
+/// The options of the commands study, reproduce, plot and view.
 
 #pragma once
 
 #include "studies/framework/study.hpp"
 #include "studies/program/reproduce.hpp"
+#include "studies/running/frames/view.hpp"
 #include "studies/running/plot.hpp"
 
 #include <CLI/CLI.hpp>
@@ -20,5 +21,6 @@ void restrict_help(CLI::App& command, const Study& to);
 
 void add_reproduce_options(CLI::App& command, ReproduceOptions& to);
 void add_plot_options(CLI::App& command, std::string& directory, FigureOptions& figures);
+void add_view_options(CLI::App& command, ViewOptions& to);
 
 }  // namespace hilda::studies

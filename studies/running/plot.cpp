@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -159,6 +160,8 @@ std::string failure_reason(const ProcessResult& result, double limit)
         return python() + " was not found (Debian: apt-get install python3-matplotlib)";
     if (result.output.find("No module named 'matplotlib'") != std::string::npos)
         return python() + " has no matplotlib (Debian: apt-get install python3-matplotlib)";
+    if (result.output.find("No module named 'numpy'") != std::string::npos)
+        return python() + " has no NumPy (Debian: apt-get install python3-numpy)";
     const std::string line = last_line(result.output);
     return line.empty()
                ? fmt::format("{} ended with the exit code {} and without a message", python(), result.code)
@@ -212,6 +215,40 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
         return std::nullopt;
     }
     return files;
+}
+
+namespace {
+
+std::vector<std::string> words_of(const std::string& script, const std::vector<std::string>& arguments)
+{
+    std::vector<std::string> words = {python(), find_script(script)};
+    if (words.back().empty()) throw io::NotAvailable("the script " + script + " was not found");
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    return words;
+}
+
+}  // namespace
+
+std::string run_script(const std::string& script, const std::vector<std::string>& arguments,
+                       double time_limit)
+{
+    const ProcessResult result = run(words_of(script, arguments), time_limit);
+    if (result.code == io::exit_code::invalid_input) throw io::InvalidInput(last_line(result.output));
+    if (result.code == io::exit_code::input_output) throw io::IoError(last_line(result.output));
+    const std::string why = failure_reason(result, time_limit);
+    if (!why.empty()) throw io::NotAvailable(script + ": " + why);
+    return last_line(result.output);
+}
+
+void start_script(const std::string& script, const std::vector<std::string>& arguments)
+{
+    std::vector<std::string> words = words_of(script, arguments);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    std::cout.flush();
+    execvp(argv[0], argv.data());
+    throw io::NotAvailable(python() + " was not found (Debian: apt-get install python3-numpy)");
 }
 
 void remove_figure(const std::string& directory, const std::string& name)

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pages of hilda view: their data against the tables, and their behaviour in a browser (headless Chromium).
+
+    HILDA_PROGRAM=build/release/hilda python3 tests/viewer/view_test.py
+
+The tests in a browser are skipped without chromedriver (Debian: chromium-driver).
+"""
+import base64
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+import numpy as np
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser  # noqa: E402
+
+HILDA = os.path.abspath(os.environ["HILDA_PROGRAM"])
+GRANULAR = os.path.join(os.path.dirname(HILDA), "hilda-granular")
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples")
+HAS_BROWSER = shutil.which("chromedriver") is not None
+
+
+def hilda(*words, program=HILDA, expected=0):
+    """Runs the program. Returns what it has written."""
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    assert done.returncode == expected, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout + done.stderr
+
+
+def data_of(page):
+    with open(page, encoding="utf-8") as file:
+        text = file.read()
+    return json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL).group(1)), text
+
+
+def numbers(text, kind):
+    return np.frombuffer(base64.b64decode(text), kind)
+
+
+def table(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+def rotation(q):
+    """Rotation matrix of a unit quaternion (x, y, z, w)"""
+    x, y, z, w = q
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def pixels(png):
+    """The image as an array, height × width × channels. Only the filters and types that browsers write"""
+    at, chunks, shape = 8, [], None
+    while at < len(png):
+        size, kind = int.from_bytes(png[at:at + 4], "big"), png[at + 4:at + 8]
+        body = png[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            shape = int.from_bytes(body[4:8], "big"), int.from_bytes(body[:4], "big"), {2: 3, 6: 4}[body[9]]
+        elif kind == b"IDAT":
+            chunks.append(body)
+        at += 12 + size
+    height, width, channels = shape
+    raw = np.frombuffer(zlib.decompress(b"".join(chunks)), np.uint8).reshape(height, 1 + width * channels)
+    image = np.zeros((height + 1, width + 1, channels), np.int64)  # with a border of zeros
+    for n, (kind, line) in enumerate(zip(raw[:, 0], raw[:, 1:].reshape(height, width, channels).astype(np.int64)), 1):
+        above = image[n - 1]
+        if kind in (0, 2):
+            image[n, 1:] = line + (above[1:] if kind == 2 else 0)
+        elif kind == 1:
+            image[n, 1:] = np.cumsum(line, axis=0)
+        else:
+            for k in range(1, width + 1):
+                a, b, c = image[n, k - 1], above[k], above[k - 1]
+                if kind == 3:
+                    guess = (a + b) // 2
+                else:
+                    p = a + b - c
+                    pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
+                    guess = np.where((pa <= pb) & (pa <= pc), a, np.where(pb <= pc, b, c))
+                image[n, k] = (line[k - 1] + guess) % 256
+        image[n] %= 256
+    return image[1:, 1:]
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.root = cls.temporary.name
+        cls.pendulum = cls.folder("pendulum")
+        hilda("run", "double_pendulum_moving", "--integrator", "rA-half-1", "--step", "1e-3", "--end", "0.5", "--output", cls.pendulum)
+        cls.bowl = cls.folder("bowl")
+        hilda("run", "braked_ball_in_bowl", "--end", "0.5", "--contacts", "--output", cls.bowl)
+        cls.grains = cls.folder("grains")
+        hilda(os.path.join(EXAMPLES, "cases", "box_fill.json"), "--output", cls.grains, "--quiet", program=GRANULAR)
+        for folder in (cls.pendulum, cls.bowl, cls.grains):
+            hilda("view", folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    @classmethod
+    def folder(cls, name):
+        return os.path.join(cls.root, name)
+
+    def test_page_needs_no_other_file(self):
+        for folder in (self.pendulum, self.grains):
+            _, text = data_of(os.path.join(folder, "view.html"))
+            self.assertIn("MIT licence", text)
+            elements = re.sub(r"<script[^>]*>.*?</script>", "", text, flags=re.DOTALL)
+            self.assertNotRegex(elements, r"(src|href)=\"(?!data:,)")
+            self.assertNotRegex(elements, r"url\(")
+
+    def test_poses_and_columns_are_those_of_the_table(self):
+        data, _ = data_of(os.path.join(self.pendulum, "view.html"))
+        rows = table(os.path.join(self.pendulum, "trajectory.csv"))
+        mechanism = data["mechanism"]
+        np.testing.assert_array_equal(numbers(mechanism["times"], "<f8"), rows["t"])
+        poses = numbers(mechanism["poses"], "<f4").reshape(len(rows["t"]), len(mechanism["bodies"]), 7)
+        for b, body in enumerate(mechanism["bodies"]):
+            for c, axis in enumerate("xyz"):
+                np.testing.assert_allclose(poses[:, b, c], rows[f"{body}.r{axis}"], atol=1e-6)
+            for k in range(0, len(rows["t"]), 50):
+                A = [[rows[f"{body}.A{i}{j}"][k] for j in "123"] for i in "123"]
+                np.testing.assert_allclose(rotation(poses[k, b, 3:]), A, atol=1e-6)
+        # The interpolation between two rows takes the shorter way.
+        self.assertTrue((np.sum(poses[1:, :, 3:] * poses[:-1, :, 3:], axis=2) > 0.99).all())
+        columns = {column["name"]: column for column in data["tables"][0]["columns"]}
+        self.assertEqual(columns["energy"]["unit"], "J")
+        energy = columns["energy"]["offset"] + numbers(columns["energy"]["values"], "<f4").astype(float)
+        change = rows["energy"] - rows["energy"][0]
+        np.testing.assert_allclose(energy - energy[0], change, atol=1e-6 * abs(change).max())
+
+    def test_contacts_have_the_forces_of_the_table(self):
+        data, _ = data_of(os.path.join(self.bowl, "view.html"))
+        rows = table(os.path.join(self.bowl, "contacts.csv"))
+        (contact,) = data["mechanism"]["contacts"]
+        values = numbers(contact["values"], "<f4").reshape(-1, 9)
+        name = contact["name"]
+        np.testing.assert_allclose(values[:, 0], rows[f"{name}.Cx"], atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(values[:, 3:6], axis=1), rows[f"{name}.F_N"], rtol=1e-5)
+        np.testing.assert_allclose(values[:, 7], rows[f"{name}.Ff_y"], rtol=1e-5, atol=1e-6)
+
+    def test_particles_are_those_of_the_last_frame(self):
+        data, _ = data_of(os.path.join(self.grains, "view.html"))
+        grains = data["grains"]
+        rows = table(os.path.join(self.grains, "particles.csv"))
+        last = grains["frames"][-1]
+        low, high = np.array(grains["low"]), np.array(grains["high"])
+        points = low + (high - low) * numbers(last["position"], "<u2").reshape(-1, 3) / 65535
+        order = np.argsort(numbers(last.get("id", grains["id"]), "<i4"))
+        expected = np.stack([rows[c] for c in ("x", "y", "z")], axis=1)[np.argsort(rows["id"])]
+        np.testing.assert_allclose(points[order], expected, atol=(high - low).max() / 65535)
+        radius = grains["largest_radius"] * numbers(last.get("radius", grains["radius"]), "<u2") / 65535
+        np.testing.assert_allclose(radius[order], rows["radius"][np.argsort(rows["id"])], rtol=1e-4)
+
+    def test_rows_and_frames_are_limited(self):
+        page = self.folder("few.html")
+        hilda("view", self.pendulum, "--frames", "11", "--output", page)
+        data, _ = data_of(page)
+        times = numbers(data["mechanism"]["times"], "<f8")
+        self.assertEqual(len(times), 11)
+        self.assertEqual((times[0], times[-1]), (0.0, 0.5))
+
+    def test_hdf5_and_unbounded_surfaces(self):
+        folder = self.folder("hdf5")
+        hilda("run", "rolling_ball", "--end", "0.2", "--format", "hdf5", "--output", folder)
+        hilda("view", folder)
+        data, _ = data_of(os.path.join(folder, "view.html"))
+        self.assertTrue(any(mesh["unbounded"] for mesh in data["mechanism"]["meshes"]))
+
+    def test_co_simulation(self):
+        folder = self.folder("strike")
+        hilda("cosim", os.path.join(EXAMPLES, "cosim", "strike", "strike.json"), "--end", "0.02", "--output", folder)
+        hilda("view", folder)
+        data, _ = data_of(os.path.join(folder, "view.html"))
+        self.assertEqual(data["mechanism"]["bodies"], ["ball"])
+        self.assertIn("grains", data)
+
+    def test_refusals(self):
+        def refused(expected, *words, code=3):
+            text = hilda("view", *words, expected=code)
+            self.assertRegex(text, expected)
+            self.assertEqual(text.count("\n"), 1, text)
+        refused("does not exist|not a directory", self.folder("none"))
+        empty = self.folder("empty")
+        os.mkdir(empty)
+        refused("contains no trajectory.csv, run.h5, run.pvd or run.csv", empty)
+        without_model = self.folder("without_model")
+        shutil.copytree(self.pendulum, without_model)
+        os.remove(os.path.join(without_model, "model.json"))
+        refused("contains no model.json", without_model)
+        without_frames = self.folder("without_frames")
+        shutil.copytree(self.grains, without_frames)
+        os.remove(os.path.join(without_frames, "run.pvd"))
+        refused("has nothing to draw.*frame_interval", without_frames)
+        damaged = self.folder("damaged")
+        shutil.copytree(self.pendulum, damaged)
+        with open(os.path.join(damaged, "trajectory.csv"), "a", encoding="utf-8") as file:
+            file.write("1,what\n1,what\n")
+        refused("trajectory.csv.*rows that are not numbers", damaged)
+        note = self.folder("note.txt")
+        with open(note, "w", encoding="utf-8") as file:
+            file.write("mine")
+        refused("is no page of hilda view; it is not replaced", self.pendulum, "--output", note)
+        refused("--frames", self.pendulum, "--frames", "0", code=2)
+        # without three.js
+        environment = {**os.environ, "HILDA_THREE": self.folder("empty")}
+        done = subprocess.run([HILDA, "view", self.pendulum], capture_output=True, text=True, env=environment)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("three.js is missing (Debian: apt-get install libjs-three)", done.stderr)
+
+    def test_server(self):
+        import urllib.error
+        import urllib.request
+        server = subprocess.Popen([HILDA, "view", self.pendulum, "--serve", "--port", "0"], stdout=subprocess.PIPE, text=True)
+        try:
+            url = server.stdout.readline().split()[1]
+            self.assertTrue(url.startswith("http://127.0.0.1:"))
+            with urllib.request.urlopen(url, timeout=30) as answer:
+                self.assertIn('"live":', answer.read().decode())
+            for path, host, code in (("x", None, 404), ("", "example.org", 403)):
+                request = urllib.request.Request(url + path, headers={"Host": host} if host else {})
+                with self.assertRaises(urllib.error.HTTPError) as refused:
+                    urllib.request.urlopen(request, timeout=30)
+                self.assertEqual(refused.exception.code, code)
+                refused.exception.close()
+        finally:
+            server.send_signal(signal.SIGINT)
+            self.assertEqual(server.wait(30), 0)
+            server.stdout.close()
+
+    @unittest.skipUnless(HAS_BROWSER, "chromedriver is not installed")
+    def test_browser(self):
+        with Browser() as browser:
+            def opened(folder):
+                browser.open("file://" + os.path.join(folder, "view.html"))
+                seconds = browser.wait("viewer.ready || viewer.errors.length")
+                self.assertEqual(browser.run("return viewer.errors"), [])
+                self.assertLess(seconds, 5)
+                image = pixels(browser.screenshot())[:500, :900, :3]
+                self.assertGreater(len(np.unique(image.reshape(-1, 3), axis=0)), 50)  # a shaded picture
+                return image
+
+            first = opened(self.pendulum)
+            rows = table(os.path.join(self.pendulum, "trajectory.csv"))
+            browser.run("viewer.set_time(0.25)")
+            browser.wait("viewer.t === 0.25")
+            k = int(np.argmin(abs(rows["t"] - 0.25)))
+            for body in ("bar_1", "bar_2"):
+                r = [rows[f"{body}.r{c}"][k] for c in "xyz"]
+                browser.wait(f"Math.abs(viewer.position('{body}')[2] - {r[2]}) < 1e-5")
+                np.testing.assert_allclose(browser.run("return viewer.position(arguments[0])", body), r, atol=1e-5)
+                at = browser.run("return viewer.project(...arguments)", *r)
+                self.assertEqual(browser.run("return viewer.pick(...arguments)", *at), body)
+                self.assertIn(body, browser.run("return document.getElementById('picked').textContent"))
+            self.assertEqual(browser.run("return viewer.pick(5, 5)"), "")
+            self.assertGreater(np.count_nonzero(first != pixels(browser.screenshot())[:500, :900, :3]), 1000)
+            browser.run("viewer.set_time(0); viewer.play(true)")
+            browser.wait("viewer.t > 0.001 && viewer.frames > 3")
+
+            opened(self.bowl)
+            self.assertFalse(browser.run("return document.getElementById('forces').hidden"))
+
+            opened(self.grains)
+            rows = table(os.path.join(self.grains, "particles.csv"))
+            browser.run("viewer.set_time(1e9)")
+            browser.wait("viewer.t > 0.29")
+            top = int(np.argmax(rows["z"]))
+            browser.wait("viewer.frames > 1")
+            at = browser.run("return viewer.project(...arguments)", *(rows[c][top] for c in ("x", "y", "z")))
+            self.assertEqual(browser.run("return viewer.pick(...arguments)", *at), f"particle {int(rows['id'][top])}")
+            self.assertEqual([m for m in browser.messages() if "SEVERE" in m or "Uncaught" in m], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -58,6 +58,9 @@ hilda_find_optional(HILDA_WITH_HDF5 "Tables in HDF5 files" "hilda run has no --f
 set(MPI_CXX_SKIP_MPICXX TRUE)
 hilda_find_optional(HILDA_WITH_MPI "Studies under mpirun" "hilda study does not run under mpirun" libopenmpi-dev MPI 3.1 COMPONENTS CXX)
 
+hilda_find_optional(HILDA_WITH_URDF "Import of URDF files" "hilda import reads no URDF files" liburdfdom-dev Urdfdom)
+hilda_find_optional(HILDA_WITH_MJCF "Import of MJCF files" "hilda import reads no MJCF files" libmujoco-dev MuJoCo 2.2)
+
 # Figures need a Python with matplotlib. On Debian this is /usr/bin/python3; another python3 may be first in
 # PATH.
 if(EXISTS /usr/bin/python3)

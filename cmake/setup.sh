@@ -15,7 +15,7 @@ hilda_jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 # Packages of Debian 12 for the programs. tests/run adds those of the tests.
 hilda_packages=(g++ cmake ninja-build git libeigen3-dev libsuitesparse-dev libgsl-dev libsundials-dev libcli11-dev
     nlohmann-json3-dev libfmt-dev libspdlog-dev libthrust-dev libcub-dev libhdf5-dev python3 python3-matplotlib libjs-three
-    libbenchmark-dev libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev)
+    libbenchmark-dev libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev liburdfdom-dev libmujoco-dev)
 
 hilda_die() { # EXIT_CODE MESSAGE
     printf 'hilda: error: %s\n' "$2" >&2

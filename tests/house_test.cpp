@@ -119,6 +119,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "experiments/chapter8",
       "experiments/sweep",
       "framework",
+      "importing",
       "kinematics",
       "plots",
       "plots/viewer",

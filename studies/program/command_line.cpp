@@ -5,6 +5,8 @@
 #include "studies/cosim/check_cosim.hpp"
 #include "studies/cosim/run_cosim.hpp"
 #include "studies/distribution/communicator.hpp"
+#include "studies/importing/export_urdf.hpp"
+#include "studies/importing/import_model.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/collect.hpp"
 #include "studies/program/columns_help.hpp"
@@ -71,6 +73,8 @@ public:
         add_granular();
         add_plot();
         add_view();
+        add_import();
+        add_export();
         add_info();
         add_new();
         add_help();
@@ -238,6 +242,20 @@ private:
                          shown);
     }
 
+    void add_import()
+    {
+        add_import_options(*add("import", "write the model file of a mechanism in a URDF or MJCF file",
+                                [this] { return import_model(imported); }),
+                           imported);
+    }
+
+    void add_export()
+    {
+        add_export_options(*add("export", "write the URDF file of a model that is a tree",
+                                [this] { return export_model(exported); }),
+                           exported);
+    }
+
     void add_info()
     {
         CLI::App* c = add("info", "print version, build, libraries and system, for bug reports",
@@ -343,6 +361,8 @@ private:
     std::string name, write_to, kind, directory;
     FigureOptions figures;  ///< of hilda plot
     ViewOptions shown;
+    ImportOptions imported;
+    ExportOptions exported;
     bool json = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };

@@ -162,4 +162,28 @@ void add_check_options(CLI::App& c, CheckOptions& o)
         "-v,--verbose", [] {}, "no effect");
 }
 
+void add_import_options(CLI::App& c, ImportOptions& to)
+{
+    c.add_option("FILE", to.file, "URDF or MJCF file")->required()->type_name("");
+    value(c, "--output", "FILE", "the model file; default: NAME.json in the current directory",
+          assign(to.output, io::path));
+    value(c, "--base", "fixed|free",
+          "whether the first body without a joint is fixed to the ground (default) or free",
+          assign(to.free_base, [](const std::string& option, const std::string& text) {
+              static const std::string words[] = {"fixed", "free"};
+              return io::one_of(option, text, words) == "free";
+          }));
+    c.add_flag("--force", to.force, "replace a file that exists");
+}
+
+void add_export_options(CLI::App& c, ExportOptions& to)
+{
+    c.add_option("MODEL", to.model, "name of a built-in model, or path of a model file")
+        ->required()
+        ->type_name("");
+    value(c, "--output", "FILE", "the URDF file; default: NAME.urdf in the current directory",
+          assign(to.output, io::path));
+    c.add_flag("--force", to.force, "replace a file that exists");
+}
+
 }  // namespace hilda::studies

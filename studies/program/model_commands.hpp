@@ -4,6 +4,8 @@
 #pragma once
 
 #include "studies/cosim/run_cosim.hpp"
+#include "studies/importing/export_urdf.hpp"
+#include "studies/importing/import_model.hpp"
 #include "studies/kinematics/kinematics.hpp"
 #include "studies/program/check_model.hpp"
 #include "studies/program/run_model.hpp"
@@ -34,5 +36,8 @@ void add_kinematics_options(CLI::App& command, KinematicsOptions& to);
 /// hilda inverse
 void add_inverse_options(CLI::App& command, KinematicsOptions& to);
 void add_check_options(CLI::App& command, CheckOptions& to);
+
+void add_import_options(CLI::App& command, ImportOptions& to);
+void add_export_options(CLI::App& command, ExportOptions& to);
 
 }  // namespace hilda::studies

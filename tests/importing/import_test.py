@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Import of URDF and MJCF files: the motion against that of MuJoCo, structure, and files that are refused.
+
+    HILDA_PROGRAM=build/release/hilda MUJOCO_RUN=build/release/tests/mujoco_run python3 tests/importing/import_test.py
+"""
+import csv
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+HILDA = os.path.abspath(os.environ["HILDA_PROGRAM"])
+MUJOCO = os.environ.get("MUJOCO_RUN", "")
+HERE = os.path.dirname(os.path.abspath(__file__))
+INERTIA = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+
+
+def run(*words, expected=0):
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == expected, (words, done.returncode, done.stdout, done.stderr)
+    return done.stdout + done.stderr
+
+
+class Import(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.root = self.temporary.name
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def path(self, name):
+        return os.path.join(self.root, name)
+
+    def imported(self, file, *options):
+        """The model of a file, and what was printed"""
+        text = run(HILDA, "import", file, "--output", self.path("model.json"), "--force", *options)
+        with open(self.path("model.json"), encoding="utf-8") as model:
+            return json.load(model), text
+
+    def written(self, text, name="model.xml"):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def refused(self, text, expected, name="model.xml", *options):
+        file = self.written(text, name)
+        said = run(HILDA, "import", file, "--output", self.path("refused.json"), *options, expected=3)
+        self.assertRegex(said, expected)
+        self.assertEqual(said.count("\n"), 1, said)
+        self.assertIn(file, said)
+        self.assertFalse(os.path.exists(self.path("refused.json")))
+
+    @unittest.skipUnless(MUJOCO, "built without MuJoCo")
+    def test_motion_is_that_of_mujoco(self):
+        step, end = "2e-4", "1"
+        for file, most in (("arm.urdf", 1e-8), ("crane.xml", 1e-6), ("swing.xml", 1e-11)):
+            self.imported(os.path.join(HERE, file))
+            run(HILDA, "run", self.path("model.json"), "--integrator", "rA-rkmk-4", "--step", step, "--end", end,
+                "--output", self.path("out"), "--force")
+            with open(self.path("out/trajectory.csv"), newline="", encoding="utf-8") as table:
+                rows = list(csv.DictReader(table))
+
+            def orientation(row, body):
+                return np.array([[float(row[f"{body}.A{i}{j}"]) for j in "123"] for i in "123"])
+            lines = run(MUJOCO, os.path.join(HERE, file), step, end).splitlines()
+            self.assertGreaterEqual(len(lines), 3)
+            moved = 0.0
+            for line in lines:
+                body, *values = line.split()
+                values = np.array(values, dtype=float)
+                r = np.array([float(rows[-1][f"{body}.r{c}"]) for c in "xyz"])
+                start = np.array([float(rows[0][f"{body}.r{c}"]) for c in "xyz"])
+                turn = orientation(rows[-1], body) @ orientation(rows[0], body).T
+                with self.subTest(file=file, body=body):
+                    self.assertLess(abs(r - values[:3]).max(), most)
+                    self.assertLess(abs(turn - values[3:].reshape(3, 3)).max(), most)
+                moved = max(moved, np.linalg.norm(r - start))
+            self.assertGreater(moved, 0.05)
+
+    def test_structure(self):
+        model, text = self.imported(os.path.join(HERE, "arm.urdf"))
+        self.assertIn("not imported: limits of joint 'rail'", text)
+        self.assertIn("3 bodies with 3 degrees of freedom", text)
+        self.assertEqual([c["type"] for c in model["constraints"]], ["revolute", "revolute", "translational"])
+        masses = {body["name"]: body["mass"] for body in model["bodies"]}
+        self.assertEqual(masses, {"upper": 1.2, "lower": 0.8 + 0.3, "slider": 0.2})  # base is fixed, tool is welded
+        self.assertEqual(model["forces"][0]["damping"], 0.05)
+        floating, text = self.imported(os.path.join(HERE, "arm.urdf"), "--base", "free")
+        self.assertIn("base", [body["name"] for body in floating["bodies"]])
+        self.assertIn("9 degrees", text)
+        model, _ = self.imported(os.path.join(HERE, "crane.xml"))
+        self.assertEqual([c["type"] for c in model["constraints"]], ["translational", "universal", "spherical"])
+        self.assertEqual(model["gravity"], [0.3, 0, -9.81])
+        model, _ = self.imported(os.path.join(HERE, "swing.xml"))
+        self.assertEqual([c["type"] for c in model["constraints"]], ["revolute", "revolute", "cylindrical"])
+        self.assertAlmostEqual(model["forces"][1]["free_angle"], 0.3)  # springref - ref
+
+    def test_export_and_import(self):
+        """A model that was exported and imported again moves as before."""
+        def last_row(model, folder):
+            run(HILDA, "run", model, "--integrator", "rA-dop853", "--rtol", "1e-11", "--end", "1", "--output", self.path(folder))
+            with open(self.path(folder + "/trajectory.csv"), newline="", encoding="utf-8") as table:
+                return {name: float(value) for name, value in list(csv.DictReader(table))[-1].items()}
+        self.imported(os.path.join(HERE, "arm.urdf"))
+        os.rename(self.path("model.json"), self.path("first.json"))
+        text = run(HILDA, "export", self.path("first.json"), "--output", self.path("again.urdf"))
+        self.assertIn("not exported: force 'rail'", text)  # the damper of a slide
+        model, _ = self.imported(os.path.join(HERE, "arm.urdf"))
+        model["forces"] = model["forces"][:1]
+        self.written(json.dumps(model), "first.json")
+        self.imported(self.path("again.urdf"))
+        first, again = last_row(self.path("first.json"), "one"), last_row(self.path("model.json"), "two")
+        for name, value in first.items():
+            if ".r" in name or ".A" in name:
+                self.assertAlmostEqual(again[name], value, delta=1e-8, msg=name)
+        for model, expected in (("n_pendulum_2", "CD has no counterpart"), ("slider_crank", "no counterpart")):
+            self.assertRegex(run(HILDA, "export", model, "--output", self.path("x.urdf"), expected=3), expected)
+        loop = {"hilda_model": 1, "name": "loop", "bodies": [
+            {"name": n, "mass": 1, "inertia": [1, 1, 1], "r": [x, 0, 0]} for n, x in (("a", 1), ("b", 2))],
+            "constraints": [{"name": f"{i}-{j}", "type": "revolute", "body_i": i, "body_j": j, "axis_bar_i": [1, 0, 0],
+                             "axis_bar_j": [1, 0, 0], "s_bar_p_i": p, "s_bar_q_j": q}
+                            for i, j, p, q in (("ground", "a", [0, 0, 0], [-1, 0, 0]), ("b", "a", [-1, 0, 0], [0, 0, 0]),
+                                               ("ground", "b", [0, 0, 0], [-2, 0, 0]))]}
+        said = run(HILDA, "export", self.written(json.dumps(loop), "loop.json"), "--output", self.path("x.urdf"), expected=3)
+        self.assertRegex(said, "constraint '.*' closes a loop; URDF files are trees")
+
+    def test_loop(self):
+        model, text = self.imported(self.written('''<mujoco><worldbody>
+            <body name="a" pos="1 0 0"><joint axis="0 1 0"/><geom type="box" size="0.5 0.05 0.05" pos="0.5 0 0"/>
+              <body name="b" pos="1 0 0"><joint axis="0 1 0"/><geom type="box" size="0.5 0.05 0.05" pos="0.5 0 0"/></body></body>
+            <body name="c" pos="3 0 1"><joint axis="0 1 0"/><geom type="box" size="0.05 0.05 0.5" pos="0 0 -0.5"/></body>
+            </worldbody><equality><connect body1="b" body2="c" anchor="1 0 0"/></equality></mujoco>'''))
+        self.assertEqual(model["constraints"][-1]["type"], "spherical")
+        self.assertIn("3 bodies with 1 degree of freedom", text)
+        self.assertIn("not imported: contacts between geoms", text)
+
+    def test_urdf_refusals(self):
+        link = f'<link name="a">{INERTIA}</link>'
+        joint = '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>'
+        self.refused("<robot name='r'><link name='world'/><link name='a'/>" + joint + "</robot>", "body 'a'.*joint 'j'.*no mass")
+        self.refused("<robot name='r'><link name='world'/>" + link + joint + joint.replace('"j"', '"k"') + "</robot>", "link .a.: it is the child of two joints")
+        self.refused("<robot name='r'>" + link + f"<link name='b'>{INERTIA}</link>" +
+                     '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
+                     '<joint name="k" type="continuous"><parent link="b"/><child link="a"/></joint></robot>', "root|loop|tree")
+        self.refused("<robot name='r'><link name='world'/>" + link + joint.replace("continuous", "spherical") + "</robot>", "type .*spherical|spherical")
+        mesh = '<link name="a">' + INERTIA + '<visual><geometry><mesh filename="none.stl"/></geometry></visual></link>'
+        self.refused("<robot name='r'><link name='world'/>" + mesh + joint + "</robot>", "link 'a': the mesh none.stl does not exist")
+        mimic = joint.replace("</joint>", '<mimic joint="j"/></joint>')
+        self.refused("<robot name='r'><link name='world'/>" + link + mimic + "</robot>", "joint 'j': mimic is not supported")
+        self.refused("<robot name='r'>" + link + "</robot>", "has no body that moves")
+        self.refused("<robot name='r'><link", "model.xml")
+
+    def test_mjcf_refusals(self):
+        def body(inside):
+            return f'<mujoco><worldbody><body name="a">{inside}<geom type="sphere" size="0.1"/></body></worldbody></mujoco>'
+        self.refused(body('<joint name="j" armature="0.1"/>'), "joint 'j': armature is not supported")
+        self.refused(body('<joint axis="1 0 0"/><joint axis="1 1 0"/>'), "body 'a': its joints .hinge hinge. have no counterpart")
+        self.refused(body('<joint name="j" type="ball" damping="1"/>'), "joint 'j': stiffness and damping")
+        self.refused(body("<joint").replace("</mujoco>", ""), "model.xml: ")
+        self.refused(body("<joint/>").replace("<worldbody>", '<option density="1.2"/><worldbody>'), "medium")
+        self.refused(body("<joint/>").replace('type="sphere" size="0.1"', 'type="mesh" mesh="m"')
+                     .replace("<worldbody>", '<asset><mesh name="m" file="none.stl"/></asset><worldbody>'), "none.stl")
+
+    def test_other_files(self):
+        self.refused("<sdf/>", "root element 'sdf'; expected robot .URDF. or mujoco .MJCF.")
+        self.refused("", "root element ''")
+        self.assertIn("does not exist", run(HILDA, "import", self.path("none.urdf"), expected=5))
+        kept = self.written("mine", "kept.json")
+        self.assertIn("the file exists; --force", run(HILDA, "import", os.path.join(HERE, "arm.urdf"), "--output", kept, expected=3))
+        with open(kept, encoding="utf-8") as file:
+            self.assertEqual(file.read(), "mine")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -6,6 +6,9 @@ include(CMakePackageConfigHelpers)
 
 set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
 
+# The Debian packages (package.cmake): libraries, programs, python, doc, and dev for everything else
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
+
 # The target is not named `hilda`, the name of the program in the build folder.
 add_library(hilda_library SHARED
     $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
@@ -30,7 +33,7 @@ if(HILDA_NATIVE)
     target_compile_options(hilda_library INTERFACE -march=native)
 endif()
 
-install(TARGETS hilda_library EXPORT hilda_targets)
+install(TARGETS hilda_library EXPORT hilda_targets LIBRARY COMPONENT libraries NAMELINK_COMPONENT dev)
 
 # hilda_component(<room> OBJECTS <objects>... [PUBLIC <target>...] [PRIVATE <target>...]): libhilda_<room>.so, the component
 # <room> of the package. It may be left out of a build: the package then gives the reason.
@@ -51,7 +54,7 @@ function(hilda_component room)
     if(NOT HILDA_SANITIZE)
         target_link_options(hilda_${room}_library PRIVATE LINKER:--no-undefined)
     endif()
-    install(TARGETS hilda_${room}_library EXPORT hilda_${room}_targets OPTIONAL)
+    install(TARGETS hilda_${room}_library EXPORT hilda_${room}_targets OPTIONAL LIBRARY COMPONENT libraries NAMELINK_COMPONENT dev)
     install(EXPORT hilda_${room}_targets FILE hilda-${room}.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
 endfunction()
 hilda_component(granular
@@ -66,19 +69,29 @@ hilda_component(studies
     PRIVATE spdlog::spdlog Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
 
 if(TARGET hilda_program)
-    install(TARGETS hilda_program hilda_granular_program)
+    install(TARGETS hilda_program hilda_granular_program RUNTIME COMPONENT programs)
+    # Man pages and completion, from the help texts
+    if(HILDA_PYTHON AND NOT CMAKE_CROSSCOMPILING)
+        set(commands "${PROJECT_BINARY_DIR}/commands")
+        set(command_files "${commands}/hilda.1" "${commands}/hilda-granular.1" "${commands}/hilda.bash")
+        add_custom_command(OUTPUT ${command_files}
+            COMMAND ${HILDA_PYTHON} "${PROJECT_SOURCE_DIR}/cmake/command_files.py"
+                $<TARGET_FILE:hilda_program> $<TARGET_FILE:hilda_granular_program> "${commands}"
+            DEPENDS hilda_program hilda_granular_program "${PROJECT_SOURCE_DIR}/cmake/command_files.py" VERBATIM)
+        add_custom_target(hilda_command_files ALL DEPENDS ${command_files})
+        install(FILES "${commands}/hilda.1" "${commands}/hilda-granular.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1"
+            COMPONENT programs OPTIONAL)
+        foreach(program hilda hilda-granular)
+            install(FILES "${commands}/hilda.bash" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
+                RENAME ${program} COMPONENT programs OPTIONAL)
+        endforeach()
+    endif()
 endif()
-if(TARGET hilda_mpi)
-    install(TARGETS hilda_mpi LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
-endif()
-foreach(module hilda_urdf hilda_mjcf)
+foreach(module hilda_mpi hilda_hdf5 hilda_urdf hilda_mjcf)
     if(TARGET ${module})
-        install(TARGETS ${module} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
+        install(TARGETS ${module} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda" COMPONENT programs)
     endif()
 endforeach()
-if(TARGET hilda_hdf5)
-    install(TARGETS hilda_hdf5 LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda")
-endif()
 
 # The public headers. Those of studies are what a plug-in needs (hildaPlugin.cmake), and a program with studies of its own.
 function(hilda_install_headers)
@@ -136,10 +149,10 @@ foreach(file IN LISTS granular_law_files ITEMS backend/engine_no_gpu.cpp)
 endforeach()
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
-    DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" OPTIONAL
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" COMPONENT programs OPTIONAL)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" COMPONENT programs OPTIONAL
     FILES_MATCHING REGEX "[.](py|js|html)$")
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 
 configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"
     INSTALL_DESTINATION "${hilda_package_dir}" PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_DATADIR)

@@ -19,6 +19,7 @@
 #include "studies/program/plugin.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/program/study_commands.hpp"
+#include "studies/repeating/rerun.hpp"
 #include "studies/running/frames/view.hpp"
 #include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
@@ -73,6 +74,7 @@ public:
         add_granular();
         add_plot();
         add_view();
+        add_rerun();
         add_import();
         add_export();
         add_info();
@@ -256,6 +258,20 @@ private:
                            exported);
     }
 
+    void add_rerun()
+    {
+        CLI::App* c = add("rerun", "repeat the command of a result directory and compare the results",
+                          [this] { return rerun(repeated); });
+        c->add_option("DIR", repeated.directory, "output directory of a run, a study or a granular run")
+            ->required()
+            ->type_name("");
+        value(*c, "--output", "DIR", "directory of the repetition, new or empty; default: DIR-again",
+              assign(repeated.output, io::path));
+        value(*c, "--tolerance", "X",
+              "numbers may differ by X times the largest number of their column (default 0)",
+              assign(repeated.tolerance, io::nonnegative_number));
+    }
+
     void add_info()
     {
         CLI::App* c = add("info", "print version, build, libraries and system, for bug reports",
@@ -361,6 +377,7 @@ private:
     std::string name, write_to, kind, directory;
     FigureOptions figures;  ///< of hilda plot
     ViewOptions shown;
+    RerunOptions repeated;
     ImportOptions imported;
     ExportOptions exported;
     bool json = false;

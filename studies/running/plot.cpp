@@ -37,6 +37,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Python writes no files beside the scripts, which may be in an installation.
+constexpr const char* no_bytecode = "-B";
+
 std::string python()
 {
     const char* configured = std::getenv("HILDA_PYTHON");
@@ -183,7 +186,7 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
                                              const FigureOptions& options)
 {
     const std::string path = find_script(script);
-    std::vector<std::string> words = {python(), path, directory};
+    std::vector<std::string> words = {python(), no_bytecode, path, directory};
     const auto add = [&](const char* option, const std::vector<std::string>& values) {
         if (values.empty()) return;
         words.emplace_back(option);
@@ -221,7 +224,7 @@ namespace {
 
 std::vector<std::string> words_of(const std::string& script, const std::vector<std::string>& arguments)
 {
-    std::vector<std::string> words = {python(), find_script(script)};
+    std::vector<std::string> words = {python(), no_bytecode, find_script(script)};
     if (words.back().empty()) throw io::NotAvailable("the script " + script + " was not found");
     words.insert(words.end(), arguments.begin(), arguments.end());
     return words;

@@ -16,9 +16,10 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::vector<std::string> commands = {
-    "run",     "cosim",    "kinematics", "inverse", "check", "models", "integrators", "schema", "study",
-    "collect", "granular", "plot",       "view",    "info",  "new",    "help",        "import", "export"};
+const std::vector<std::string> commands = {"run",      "cosim",       "kinematics", "inverse", "check",
+                                           "models",   "integrators", "schema",     "study",   "collect",
+                                           "granular", "plot",        "view",       "info",    "new",
+                                           "help",     "import",      "export",     "rerun"};
 
 /// All help texts, by the call that prints them
 std::vector<std::pair<std::string, std::string>> help_texts(const Scratch& in)

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/repeating/rerun.hpp"
+
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/json_source.hpp"
+#include "studies/program/granular_program.hpp"
+#include "studies/repeating/compare_results.hpp"
+#include "studies/running/provenance.hpp"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <iostream>
+
+extern char** environ;
+
+namespace hilda::studies {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Record {
+    std::string file, command, version;
+};
+
+Record read_record(const std::string& directory)
+{
+    for (const char* name : {"summary.json", "study.json"}) {
+        const std::string file = fs::path(directory) / name;
+        std::error_code error;
+        if (!fs::is_regular_file(file, error)) continue;
+        const io::JsonSource source(io::read_file(file, io::JsonSource::max_bytes), file,
+                                    io::JsonSource::max_bytes);
+        const io::Json::Member* provenance = source.root.member("provenance");
+        const auto text = [&](const char* key) -> std::string {
+            const io::Json::Member* member = provenance == nullptr ? nullptr : provenance->value.member(key);
+            return member == nullptr || member->value.string() == nullptr ? "" : *member->value.string();
+        };
+        if (text("command_line").empty())
+            throw io::InvalidInput(file + ": has no command line in its provenance");
+        return {file, text("command_line"), fmt::format("hilda {} ({})", text("version"), text("git"))};
+    }
+    throw io::InvalidInput(directory + ": contains no summary.json or study.json, which record the command");
+}
+
+/// The command with another output directory. --force and --resume are removed.
+std::vector<std::string> with_output(const std::vector<std::string>& words, const std::string& output)
+{
+    std::vector<std::string> all;
+    for (size_t k = 0; k < words.size(); ++k) {
+        if (words[k] == "--output") {
+            ++k;
+        } else if (!words[k].starts_with("--output=") && words[k] != "--force" && words[k] != "--resume") {
+            all.push_back(words[k]);
+        }
+    }
+    all.insert(all.end(), {"--output", output});
+    return all;
+}
+
+/// Runs a program and waits for it. Returns its exit code.
+int run(const std::string& program, std::vector<std::string> words)
+{
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    if (posix_spawn(&child, program.c_str(), nullptr, nullptr, argv.data(), environ) != 0)
+        throw io::NotAvailable("rerun: " + program + " cannot be started");
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : io::exit_code::signal + WTERMSIG(status);
+}
+
+}  // namespace
+
+std::vector<std::string> shell_words(const std::string& text)
+{
+    std::vector<std::string> words;
+    bool in_word = false;
+    for (size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if (c == ' ') {
+            in_word = false;
+            continue;
+        }
+        if (!in_word) words.emplace_back();
+        in_word = true;
+        if (c == '\'') {
+            const size_t end = text.find('\'', k + 1);
+            if (end == std::string::npos)
+                throw io::InvalidInput("the command line has an open quotation mark: " + text);
+            words.back() += text.substr(k + 1, end - k - 1);
+            k = end;
+        } else if (c == '\\' && k + 1 < text.size()) {
+            words.back() += text[++k];
+        } else {
+            words.back() += c;
+        }
+    }
+    return words;
+}
+
+int rerun(const RerunOptions& options)
+{
+    std::error_code error;
+    if (!fs::is_directory(options.directory, error))
+        throw io::InvalidInput(options.directory + ": is not a directory; hilda rerun needs a result");
+    const Record record = read_record(options.directory);
+    std::vector<std::string> words = shell_words(record.command);
+    const std::string name = fs::path(words.front()).filename();
+    if (name != "hilda" && name != "hilda-granular")
+        throw io::InvalidInput(record.file + ": the command is of no program of HILDA: " + record.command);
+    std::string output = options.output;
+    if (output.empty()) output = (fs::path(options.directory) / "").parent_path().string() + "-again";
+    if (!io::is_missing_or_empty(output))
+        throw io::InvalidInput(output + ": the directory is not empty; --output selects another one");
+    words = with_output(words, output);
+    const std::string program =
+        name == "hilda" ? fs::read_symlink("/proc/self/exe", error).string() : granular_program();
+    std::cout << "recorded by   " << record.version << ", repeated by " << version_line()
+              << "\nrepeats       " << fmt::format("{}\n", fmt::join(words, " ")) << std::flush;
+    const int code = run(program, words);
+    if (code != io::exit_code::done && code != io::exit_code::numerical_failure) return code;
+    bool equal = true;
+    for (const FileComparison& file : compare_results(options.directory, output, options.tolerance)) {
+        std::cout << fmt::format("{}  {}: {}\n", file.is_equal ? "equal       " : "different   ", file.file,
+                                 file.description);
+        equal = equal && file.is_equal;
+    }
+    return equal ? code : io::exit_code::expectation_failed;
+}
+
+}  // namespace hilda::studies

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Repeats the command that has written a result directory, and compares the results.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hilda::studies {
+
+struct RerunOptions {
+    std::string directory;  ///< with summary.json or study.json
+    std::string output;     ///< of the repetition, new or empty; empty: DIRECTORY-again
+    double tolerance = 0;   ///< see compare_results()
+};
+
+/// Words of a text that io::shell_quoted() has written. io::InvalidInput for an open quotation mark.
+std::vector<std::string> shell_words(const std::string& text);
+
+/// Repeats the recorded command with another output directory, in the present folder, and prints how the
+/// files compare. Returns exit_code::expectation_failed if a file differs, else that of the command.
+///
+/// Throws io::InvalidInput if the directory has no record of a command, or one of no program of HILDA.
+int rerun(const RerunOptions& options);
+
+}  // namespace hilda::studies

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "studies/repeating/rerun.hpp"
+
+#include "io/error.hpp"
+#include "io/provenance.hpp"
+#include "studies/repeating/compare_results.hpp"
+#include "tests/studies/program.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a command line that was quoted for the shell has the same words")
+{
+    std::vector<std::string> words = {"hilda", "run", "a b.json", "--set", "/bodies/0/r/0=\"3*w\"",
+                                      "it's",  "x\\y"};
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    CHECK(studies::shell_words(io::shell_quoted(static_cast<int>(argv.size()), argv.data())) == words);
+    CHECK_THROWS_AS(studies::shell_words("hilda 'run"), io::InvalidInput);
+}
+
+TEST_CASE("hilda rerun repeats a run and finds what differs")
+{
+    const Scratch in;
+    REQUIRE(
+        call(in, {"run", "double_pendulum", "--end", "0.05", "--set", "/bodies/0/mass=300", "--output", "a"})
+            .code == 0);
+    const Ended same = call(in, {"rerun", "a"});
+    INFO(same.out << same.err);
+    CHECK(same.code == 0);
+    CHECK_THAT(same.out, Contains("trajectory.csv: identical") && Contains("model.json: identical") &&
+                             Contains("--output a-again"));
+    CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("a-again: the directory is not empty"));
+
+    std::string table = read(in / "a/trajectory.csv");
+    const size_t last = table.rfind(',');
+    table.replace(last, std::string::npos, ",12\n");
+    write(in / "a/trajectory.csv", table);
+    const Ended changed = call(in, {"rerun", "a", "--output", "b"});
+    CHECK(changed.code == 6);
+    CHECK_THAT(changed.out, Contains("largest difference") && Contains("column constraint_norm in row 51"));
+    CHECK(call(in, {"rerun", "a", "--output", "c", "--tolerance", "1"}).code == 0);
+}
+
+TEST_CASE("hilda rerun refuses a folder that is no result")
+{
+    const Scratch in;
+    CHECK(call(in, {"rerun", "none"}).code == 3);
+    fs::create_directory(in / "a");
+    CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("contains no summary.json or study.json"));
+    write(in / "a/summary.json", "{}");
+    CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("has no command line"));
+    write(in / "a/summary.json", R"({"provenance": {"command_line": "rm -r x"}})");
+    const Ended other = call(in, {"rerun", "a"});
+    CHECK(other.code == 3);
+    CHECK_THAT(other.err, Contains("of no program of HILDA: rm -r x"));
+}

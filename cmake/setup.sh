@@ -17,6 +17,10 @@ hilda_packages=(g++ cmake ninja-build git libeigen3-dev libsuitesparse-dev libgs
     nlohmann-json3-dev libfmt-dev libspdlog-dev libthrust-dev libcub-dev libhdf5-dev python3 python3-matplotlib libjs-three
     libbenchmark-dev libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev liburdfdom-dev libmujoco-dev)
 
+# Packages for the documentation site (docs/build).
+hilda_site_packages=(python3-numpy python3-sphinx python3-myst-parser python3-breathe python3-sphinx-copybutton furo doxygen
+    libjs-katex nodejs)
+
 hilda_die() { # EXIT_CODE MESSAGE
     printf 'hilda: error: %s\n' "$2" >&2
     exit "$1"

@@ -31,7 +31,6 @@ def arguments():
     parser.add_argument("--output", metavar="DIR", default=str(ROOT / "build" / "site"), help="folder of the site (default: build/site)")
     parser.add_argument("--build", metavar="DIR", default=str(ROOT / "build" / "release"),
                         help="build folder with hilda, hilda-granular and python/hilda (default: build/release)")
-    parser.add_argument("--studies", action="store_true", help="run all studies for the gallery (about 20 minutes), not the quick ones only")
     parser.add_argument("--jobs", metavar="N", type=int, default=len(os.sched_getaffinity(0)), help="number of processes")
     parser.add_argument("--check-arguments", action="store_true", help="check the arguments and do nothing else")
     options = parser.parse_args()
@@ -104,8 +103,7 @@ def main():
         report(f"{len(headers.installed())} headers read")
         times = run_tutorials(stage, environment, options.jobs)
         report(f"{len(times)} pages executed in {sum(times.values()):.0f} s of run time")
-        drawn, left = gallery.write(stage, work, environment, options.studies, options.jobs)
-        report(f"{drawn} studies drawn for the gallery" + (f", {left} left out without --studies" if left else ""))
+        report(f"{gallery.write(stage, work, environment, options.jobs)} studies drawn for the gallery")
         pages.add_navigation(stage)
         run_sphinx(stage, output, work, environment, options.jobs)
         report("pages written")

@@ -123,9 +123,30 @@ def run_doxygen(work):
             continue
         for compound in prepare_xml(file).iter("compounddef"):
             if compound.get("kind") == "file":
-                files[compound.find("location").get("file")] = compound.get("id")
+                files.setdefault(compound.find("location").get("file"), []).insert(0, compound.get("id"))
+            if compound.get("kind") == "namespace" and "@" not in compound.findtext("compoundname"):
+                for name, identifier in split_namespace(compound, file.parent):
+                    files.setdefault(name, []).append(identifier)
     write(work / "headers.json", json.dumps(files))
     return warnings
+
+
+def split_namespace(compound, folder):
+    """Writes a file for each header with members of a namespace, which the file of the header does not have. Returns headers and
+    identifiers."""
+    members = {}
+    for section in compound.findall("sectiondef"):
+        for member in section.findall("memberdef"):
+            members.setdefault(member.find("location").get("file"), {}).setdefault(section.get("kind"), []).append(member)
+    for count, (name, sections) in enumerate(sorted(members.items())):
+        identifier = f"{compound.get('id')}_in_{count}"
+        root = ElementTree.Element("doxygen", version="1.9.4")
+        part = ElementTree.SubElement(root, "compounddef", id=identifier, kind="namespace", language="C++")
+        ElementTree.SubElement(part, "compoundname").text = compound.findtext("compoundname")
+        for kind, found in sections.items():
+            ElementTree.SubElement(part, "sectiondef", kind=kind).extend(found)
+        ElementTree.ElementTree(root).write(folder / f"{identifier}.xml", encoding="utf-8", xml_declaration=True)
+        yield name, identifier
 
 
 def prepare_xml(path):
@@ -157,6 +178,12 @@ def prepare_member(section, member):
     if initializer is not None and re.search(r"[{\[\"]", "".join(initializer.itertext())):
         member.remove(initializer)
     arguments = member.find("argsstring")
+    if arguments is not None and re.match(r'\s*\(\s*"', arguments.text or ""):
+        # a variable with the arguments of its constructor
+        member.set("kind", "variable")
+        arguments.text = ""
+        for parameter in member.findall("param"):
+            member.remove(parameter)
     if arguments is not None and arguments.text:
         arguments.text = re.sub(r"=\s*\[\][^{]*\{[^}]*\}", "={}", arguments.text)
     for parameter in member.iter("param"):

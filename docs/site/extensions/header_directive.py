@@ -18,16 +18,23 @@ class HeaderDirective(BaseDirective):
     def run(self):
         project = self.project_info_factory.create_project_info(self.options)
         name = self.arguments[0]
-        identifier = self.config.hilda_headers.get(name)
-        if identifier is None:
+        identifiers = self.config.hilda_headers.get(name)
+        if not identifiers:
             raise self.error(f"the header {name} is not in the XML output of Doxygen")
         parser = self.parser_factory.create_compound_parser(project)
-        file_data = parser.parse(identifier)
-        stack = [file_data.compounddef, file_data]
         handler = create_target_handler(self.options, project, self.state.document)
-        accept = self.filter_factory.create_file_filter(name, self.options)
-        renderer = SphinxRenderer(self.parser_factory.app, project, stack, self.state, self.state.document, handler, parser, accept)
-        return renderer.render(stack[0], RenderContext(stack, NullMaskFactory(), self.directive_args))
+
+        def render(stack, accept):
+            renderer = SphinxRenderer(self.parser_factory.app, project, stack, self.state, self.state.document, handler, parser, accept)
+            return renderer.render(stack[0], RenderContext(stack, NullMaskFactory(), self.directive_args))
+
+        file_data = parser.parse(identifiers[0])
+        nodes = render([file_data.compounddef, file_data], self.filter_factory.create_file_filter(name, self.options))
+        for identifier in identifiers[1:]:  # the members of a namespace in this header
+            data = parser.parse(identifier)
+            for section in data.compounddef.sectiondef:
+                nodes += render([section, data.compounddef, data], self.filter_factory.create_open_filter())
+        return nodes
 
 
 def setup(app):

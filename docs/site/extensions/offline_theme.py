@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the theme of Debian independent of its web server: imports of /javascript/FILE in its style sheets are replaced by the file."""
+"""Makes the theme of Debian independent of a web server: imports of /javascript/FILE in style sheets, and of modules in scripts, which
+browsers do not load from files, are replaced by the file."""
 import pathlib
 import re
 
@@ -16,6 +17,13 @@ def replace_imports(app, exception):
     for path in pathlib.Path(app.outdir).rglob("*.css"):
         text = path.read_text(encoding="utf-8")
         changed = re.sub(r"@import url\(/javascript/([^)]+)\);", include, text)
+        if changed != text:
+            path.unlink()
+            path.write_text(changed, encoding="utf-8")
+    for path in pathlib.Path(app.outdir).rglob("scripts/*.js"):
+        text = path.read_text(encoding="utf-8")
+        changed = re.sub(r'^import \w+ from "\./([^"]+)";', lambda match: (path.parent / match[1]).read_text(encoding="utf-8"), text,
+                         flags=re.MULTILINE)
         if changed != text:
             path.unlink()
             path.write_text(changed, encoding="utf-8")

@@ -53,6 +53,7 @@ html_copy_source = False
 html_show_sphinx = False
 html_theme_options = {"navigation_with_keys": True}
 pygments_style = "friendly"
+highlight_language = "none"  # blocks without a language are equations and output
 copybutton_prompt_text = "$ "
 
 

@@ -38,6 +38,8 @@ CHILDREN = {
     "examples/README": "examples/plugin-granular-law",
 }
 ORDERED_BY = {"docs/guide": "docs/README.md"}
+# Titles in the sidebar, where that of the page does not tell it from another one.
+TITLES = {"README": "Overview", "docs/README": "All pages by task", "studies/README": "List of studies"}
 
 
 class Failure(Exception):
@@ -127,16 +129,22 @@ def in_order_of_links(index, folder, pages):
     text = index.read_text(encoding="utf-8") if index.exists() else ""
     names = [pathlib.PurePosixPath(page).name for page in pages]
 
-    def place(page):
-        name = pathlib.PurePosixPath(page).name
+    def linked(name):
         found = re.search(rf"\]\((?:[\w./-]*/)?{re.escape(name)}(?:\.md)?[#)]", text)
-        return (found.start() if found else len(text)), names.index(name)
+        return found.start() if found else len(text)
+
+    def place(page):
+        # Parts of a page, such as grains-laws of grains, follow it.
+        name = pathlib.PurePosixPath(page).name
+        whole = next((other for other in names if name.startswith(other + "-") and linked(other) < len(text)), name)
+        return linked(whole), whole != name, linked(name), names.index(name)
     return sorted(pages, key=place)
 
 
 def toctree(pages, caption=None):
     options = [":hidden:"] + ([f":caption: {caption}"] if caption else [])
-    return "\n".join(["", "```{toctree}", *options, "", *("/" + page for page in pages), "```", ""])
+    return "\n".join(["", "```{toctree}", *options, "", *(f"{TITLES[page]} </{page}>" if page in TITLES else "/" + page for page in pages),
+                      "```", ""])
 
 
 def add_navigation(target):

@@ -15,7 +15,8 @@ import tempfile
 import time
 
 BLOCK = re.compile(r"^```python\n(.*?)^```\n", re.S | re.M)
-STYLE = {"figure.figsize": (6.4, 3.8), "figure.dpi": 100, "savefig.dpi": 150, "font.size": 10, "axes.grid": True, "grid.alpha": 0.3,
+STYLE = {"figure.constrained_layout.use": True, "figure.figsize": (6.4, 3.8), "figure.dpi": 100, "savefig.dpi": 150, "font.size": 10,
+         "axes.grid": True, "grid.alpha": 0.3,
          "axes.prop_cycle": "cycler('color', ['#1f5fa8', '#d1622b', '#3a8a4d', '#8c4fa0', '#7a6a53', '#c23b5a'])"}
 
 

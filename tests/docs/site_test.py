@@ -19,8 +19,9 @@ import xml.etree.ElementTree as ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["HILDA_BUILD"]).resolve()
 MISSING = [name for name in ("sphinx", "myst_parser", "breathe", "furo") if importlib.util.find_spec(name) is None]
-if shutil.which("doxygen") is None:
-    MISSING.append("doxygen")
+MISSING += [name for name in ("doxygen", "node") if shutil.which(name) is None]
+if not pathlib.Path("/usr/share/javascript/katex/katex.js").exists():
+    MISSING.append("katex")
 sys.path[:0] = [str(ROOT / "docs" / "site"), str(BUILD / "python")]
 
 

@@ -12,8 +12,9 @@ from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailu
 from .integrator import Integrator
 from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
+from .parameters import Sweep, sweep
 from .result import BodyResult, Result
 
 __all__ = ["BodyResult", "Convergence", "Error", "FileError", "Integrator", "InvalidInput", "Model", "NotAvailable",
-           "NumericalFailure", "Result", "Saddle", "State", "System", "UsageError", "__version__", "convergence", "errors",
-           "integrators", "problems", "run", "so3"]
+           "NumericalFailure", "Result", "Saddle", "State", "Sweep", "System", "UsageError", "__version__", "convergence",
+           "errors", "integrators", "problems", "run", "so3", "sweep"]

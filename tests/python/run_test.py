@@ -6,6 +6,7 @@ import os
 import pickle
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -62,6 +63,21 @@ class Rows(unittest.TestCase):
         self.assertIsNotNone(result.r.base)  # a part of the array that the run has written
         self.assertTrue(result.r.flags["C_CONTIGUOUS"])
         self.assertTrue(np.isfinite(result.r).all())
+
+    def test_the_memory_is_that_of_the_arrays(self):
+        code = """
+import resource, hilda
+def peak():
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+hilda.run("single_pendulum", "rA-half-1", end=0.01)
+before = peak()
+r = hilda.run("single_pendulum", "rA-half-1", step=1e-5, end=3, interval=0)
+arrays = (r.t, r.r, r.A, r.rdot, r.omega_bar, r.rddot, r.omegadot_bar, r.lambda_, r.energy)
+print(len(r.t), (peak() - before) / sum(a.nbytes for a in arrays))
+"""
+        rows, ratio = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+        self.assertEqual(int(rows), 300001)
+        self.assertLess(float(ratio), 1.1)
 
     def test_repeated_runs_are_equal(self):
         model = hilda.Model("slider_crank")

@@ -164,10 +164,10 @@ private:
             add("spherical", anchor, nullptr, nullptr);
         } else if (kinds == "hinge") {
             add("revolute", anchor, &axis, &axis);
-            add_springs(joints, i, j);
+            add_springs(joints, i, j, anchor);
         } else if (kinds == "slide") {
             add("translational", anchor, &axis, &axis);
-            add_springs(joints, i, j);
+            add_springs(joints, i, j, anchor);
         } else if (kinds == "hinge hinge" && have_common_anchor(joints) &&
                    are_perpendicular(axis, joints[1].axis)) {
             refuse_springs(joints);
@@ -175,7 +175,7 @@ private:
         } else if ((kinds == "hinge slide" || kinds == "slide hinge") && are_parallel(axis, joints[1].axis)) {
             const Vec3& on_axis = joints[kinds == "hinge slide" ? 0 : 1].anchor;
             add("cylindrical", on_axis, &axis, &axis);
-            add_springs(joints, i, j);
+            add_springs(joints, i, j, on_axis);
         } else if (kinds == "slide slide hinge" && are_perpendicular(axis, joints[2].axis) &&
                    are_perpendicular(joints[1].axis, joints[2].axis) && !are_parallel(axis, joints[1].axis)) {
             refuse_springs(joints);
@@ -229,7 +229,8 @@ private:
                        "stiffness and damping are imported for single hinges and slides only");
     }
 
-    void add_springs(const std::vector<ImportedJoint>& joints, int i, int j)
+    /// `anchor` is on the axis of the joint: it stays there when body j turns.
+    void add_springs(const std::vector<ImportedJoint>& joints, int i, int j, const Vec3& anchor)
     {
         for (const ImportedJoint& joint : joints) {
             if (joint.stiffness == 0 && joint.damping == 0) continue;
@@ -243,7 +244,7 @@ private:
             } else {
                 // The length of a spring is positive: its first point is far behind the anchor.
                 const double behind = 100 * std::ceil(size());
-                add_points(one, i, joint.anchor - behind * joint.axis, j, joint.anchor);
+                add_points(one, i, anchor - behind * joint.axis, j, anchor);
                 one["free_length"] = behind + joint.rest;
             }
             forces.push_back(std::move(one));

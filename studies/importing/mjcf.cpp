@@ -98,6 +98,7 @@ private:
         const int q = model->jnt_qposadr[j], dof = model->jnt_dofadr[j];
         if (dofs == 1) one.rest = model->qpos_spring[q] - model->qpos0[q];
         one.damping = model->dof_damping[dof];
+        if ((model->opt.disableflags & mjDSBL_PASSIVE) != 0) one.stiffness = one.damping = 0;
         for (int k = dof; k < dof + dofs; ++k) {
             if (model->dof_armature[k] != 0) refuse(what + ": armature is not supported");
             if (k == dof && model->dof_frictionloss[k] != 0) to.warnings.push_back("frictionloss of " + what);
@@ -108,7 +109,7 @@ private:
 
     void add_loop(int e)
     {
-        if (model->eq_active[e] == 0) return;
+        if (model->eq_active[e] == 0 || (model->opt.disableflags & mjDSBL_EQUALITY) != 0) return;
         const std::string name = name_of(mjOBJ_EQUALITY, e, "equality");
         const int type = model->eq_type[e], b1 = model->eq_obj1id[e], b2 = model->eq_obj2id[e];
         if (type != mjEQ_CONNECT && type != mjEQ_WELD)

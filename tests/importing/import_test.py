@@ -138,6 +138,16 @@ class Import(unittest.TestCase):
         self.assertIn("3 bodies with 1 degree of freedom", text)
         self.assertIn("not imported: contacts between geoms", text)
 
+    def test_flags(self):
+        text = """<mujoco><option><flag passive="disable" equality="disable"/></option><worldbody>
+            <body name="a"><joint axis="0 1 0" stiffness="5" damping="2"/><geom size="0.1" pos="1 0 0"/></body>
+            <body name="b" pos="3 0 0"><freejoint/><geom size="0.1"/></body></worldbody>
+            <equality><connect body1="a" body2="b" anchor="1 0 0"/></equality></mujoco>"""
+        model, _ = self.imported(self.written(text))
+        self.assertEqual((len(model["constraints"]), model["forces"]), (1, []))
+        model, _ = self.imported(self.written(text.replace("disable", "enable").replace('pos="3 0 0"', 'pos="1 0 0"')))
+        self.assertEqual((len(model["constraints"]), len(model["forces"])), (2, 1))
+
     def test_urdf_refusals(self):
         link = f'<link name="a">{INERTIA}</link>'
         joint = '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>'

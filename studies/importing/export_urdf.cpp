@@ -129,7 +129,7 @@ private:
         if (at(source.root, "contacts").size() > 0) left_out.emplace_back("contacts");
         const Vec3 g =
             at(source.root, "gravity").size() == 3 ? vector(at(source.root, "gravity")) : Vec3::Zero();
-        if (g.head<2>().norm() != 0 || g.z() > 0)
+        if (g != Vec3(0, 0, -9.81))
             left_out.push_back(
                 fmt::format("gravity ({}), which a program that reads the file sets", numbers(g)));
         for (const lie::Motion& b : d.x.body)

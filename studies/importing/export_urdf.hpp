@@ -15,7 +15,8 @@ namespace hilda::studies {
 /// The URDF text of a model whose bodies form a tree of revolute, translational and fixed joints, with the
 /// ground (the link `world`) or free bodies as roots, in its initial configuration. The frame of a link is at
 /// its joint, parallel to the frame of the body. Dampers about a revolute joint become its damping.
-/// `left_out` receives what URDF has not: other forces, contacts, gravity other than -z, initial velocities.
+/// `left_out` receives what URDF has not: other forces, contacts, gravity other than 9.81 m/s² along -z,
+/// initial velocities.
 ///
 /// Throws io::InvalidInput "NAME: ..." for loops and for other constraints.
 std::string urdf_text(const dae::Description& model, std::vector<std::string>& left_out);

@@ -83,12 +83,12 @@ private:
     {
         for (size_t n = 0; n < body.size(); ++n) {
             owners.push_back(moves(n) ? static_cast<int>(n) : owner(body[n].parent));
-            if (moves(n) || owners[n] < 0 || body[n].m == 0) continue;
+            if (moves(n) || owners[n] < 0 || (body[n].m == 0 && body[n].J_bar.isZero(0))) continue;
             ImportedBody& to = body[static_cast<size_t>(owners[n])];
             const ImportedBody& part = body[n];
             if (to.m == 0) to.name = part.name;  // a frame without mass
             const double m = to.m + part.m;
-            const Vec3 r = (to.m * to.r + part.m * part.r) / m;
+            const Vec3 r = m > 0 ? Vec3((to.m * to.r + part.m * part.r) / m) : to.r;
             const auto about_r = [&](const ImportedBody& of) {
                 const Vec3 d = of.r - r;
                 return Mat3(of.A * of.J_bar * of.A.transpose() +
@@ -159,7 +159,9 @@ private:
         const std::string kinds = kinds_of(joints);
         if (kinds == "free") {
             refuse_springs(joints);
-        } else if (kinds == "ball" || (kinds == "hinge hinge hinge" && have_common_anchor(joints))) {
+        } else if (kinds == "ball" ||
+                   (kinds == "hinge hinge hinge" && have_common_anchor(joints) &&
+                    !are_parallel(axis, joints[1].axis) && !are_parallel(joints[1].axis, joints[2].axis))) {
             refuse_springs(joints);
             add("spherical", anchor, nullptr, nullptr);
         } else if (kinds == "hinge") {

@@ -117,6 +117,8 @@ private:
         ImportedLoop loop{.name = name, .is_weld = type == mjEQ_WELD, .i = b1 - 1, .j = b2 - 1};
         loop.point = vector(data->xpos + 3 * b1) +
                      matrix(data->xmat + 9 * b1) * vector(model->eq_data + mjNEQDATA * e);
+        if (loop.is_weld)
+            to.warnings.push_back("relpose of equality '" + name + "'; the pose of qpos0 is kept");
         to.loops.push_back(loop);
     }
 

@@ -395,8 +395,8 @@ def page(data):
     values = {"TITLE": html.escape(data["title"]), "THREE": read_text(LIBRARY, "three.min.js"),
               "CONTROLS": read_text(LIBRARY, "examples", "js", "controls", "OrbitControls.js"),
               "SCENE": read_text(HERE, "scene.js"), "PLOTS": read_text(HERE, "plots.js"), "MAIN": read_text(HERE, "main.js"),
-              # "</" would end the element of the page
-              "DATA": json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")}
+              # "<" could end the element of the page, or begin another one
+              "DATA": json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")}
     return re.sub("@([A-Z]+)@", lambda match: values[match.group(1)], read_text(HERE, "page.html"))
 
 

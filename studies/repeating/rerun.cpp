@@ -115,6 +115,7 @@ int rerun(const RerunOptions& options)
         throw io::InvalidInput(options.directory + ": is not a directory; hilda rerun needs a result");
     const Record record = read_record(options.directory);
     std::vector<std::string> words = shell_words(record.command);
+    if (words.empty()) throw io::InvalidInput(record.file + ": has an empty command line");
     const std::string name = fs::path(words.front()).filename();
     if (name != "hilda" && name != "hilda-granular")
         throw io::InvalidInput(record.file + ": the command is of no program of HILDA: " + record.command);

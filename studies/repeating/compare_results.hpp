@@ -17,7 +17,7 @@ struct FileComparison {
 
 /// Compares model.json, case.json and the tables (*.csv) of two directories and their subdirectories. Two
 /// numbers of a table are equal if they differ by at most `tolerance` times the largest number of their
-/// column. Columns with times of the computer (names with `seconds`, `wall` or `cpu`) are left out.
+/// column. Columns with times of the computer (names that end with `seconds` or `wall_ns`) are left out.
 /// io::IoError for files that cannot be read.
 std::vector<FileComparison> compare_results(const std::string& one, const std::string& two, double tolerance);
 

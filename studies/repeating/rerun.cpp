@@ -115,6 +115,11 @@ int rerun(const RerunOptions& options)
         throw io::InvalidInput(options.directory + ": is not a directory; hilda rerun needs a result");
     const Record record = read_record(options.directory);
     std::vector<std::string> words = shell_words(record.command);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(options.directory))
+        if (entry.path().extension() == ".h5")
+            throw io::InvalidInput(entry.path().string() +
+                                   ": tables in HDF5 files are not compared; run again "
+                                   "with --format csv");
     if (words.empty()) throw io::InvalidInput(record.file + ": has an empty command line");
     const std::string name = fs::path(words.front()).filename();
     if (name != "hilda" && name != "hilda-granular")

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
 
 namespace hilda::studies {
 
@@ -88,26 +89,34 @@ void compare_tables(const std::string& one, const std::string& two, double toler
     if (left_out > 0) result.description += ", times of the computer left out";
 }
 
+/// The inputs and tables of a result, relative to its directory
+std::set<std::string> files_of(const std::string& directory)
+{
+    std::set<std::string> files;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory)) {
+        const std::string name = entry.path().filename();
+        if (entry.is_regular_file() &&
+            (name == "model.json" || name == "case.json" || entry.path().extension() == ".csv"))
+            files.insert(entry.path().lexically_relative(directory));
+    }
+    return files;
+}
+
 }  // namespace
 
 std::vector<FileComparison> compare_results(const std::string& one, const std::string& two, double tolerance)
 {
-    std::vector<std::string> files;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(one)) {
-        const std::string name = entry.path().filename();
-        if (entry.is_regular_file() &&
-            (name == "model.json" || name == "case.json" || entry.path().extension() == ".csv"))
-            files.push_back(entry.path().lexically_relative(one));
-    }
-    std::sort(files.begin(), files.end());
+    std::set<std::string> files = files_of(one);
+    const std::set<std::string> of_one = files, of_two = files_of(two);
+    files.insert(of_two.begin(), of_two.end());
     std::vector<FileComparison> all;
     for (const std::string& file : files) {
         FileComparison result{.file = file, .description = "identical"};
         const std::string first = fs::path(one) / file, second = fs::path(two) / file;
-        std::error_code error;
-        if (!fs::exists(second, error)) {
+        if (!of_two.contains(file) || !of_one.contains(file)) {
             result.is_equal = false;
-            result.description = "is missing when repeated";
+            result.description =
+                of_one.contains(file) ? "is missing when repeated" : "exists only when repeated";
         } else if (io::read_file(first, size_t(2) << 30) != io::read_file(second, size_t(2) << 30)) {
             if (fs::path(file).extension() == ".csv") {
                 compare_tables(first, second, tolerance, result);

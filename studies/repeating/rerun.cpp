@@ -13,9 +13,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 extern char** environ;
 
@@ -29,10 +31,11 @@ struct Record {
     std::string file, command, version;
 };
 
-Record read_record(const std::string& directory)
+/// The record in a directory; nothing without a summary.json or study.json
+std::optional<Record> record_in(const fs::path& directory)
 {
     for (const char* name : {"summary.json", "study.json"}) {
-        const std::string file = fs::path(directory) / name;
+        const std::string file = directory / name;
         std::error_code error;
         if (!fs::is_regular_file(file, error)) continue;
         const io::JsonSource source(io::read_file(file, io::JsonSource::max_bytes), file,
@@ -44,16 +47,56 @@ Record read_record(const std::string& directory)
         };
         if (text("command_line").empty())
             throw io::InvalidInput(file + ": has no command line in its provenance");
-        return {file, text("command_line"), fmt::format("hilda {} ({})", text("version"), text("git"))};
+        return Record{file, text("command_line"), fmt::format("hilda {} ({})", text("version"), text("git"))};
     }
-    throw io::InvalidInput(directory + ": contains no summary.json or study.json, which record the command");
+    return {};
 }
 
-/// The command with another output directory. --force and --resume are removed.
+/// The record of a result, or that of a run with several integrators, each of which has a folder.
+Record read_record(const fs::path& directory)
+{
+    if (const std::optional<Record> found = record_in(directory)) return *found;
+    std::vector<fs::path> folders;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+        if (entry.is_directory()) folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end());
+    std::optional<Record> common;
+    for (const fs::path& folder : folders) {
+        const std::optional<Record> found = record_in(folder);
+        if (!found) continue;
+        if (!common) common = found;
+        if (common->command != found->command)
+            throw io::InvalidInput(directory.string() + ": contains the results of several commands, " +
+                                   common->file + " and " + found->file + "; repeat one of them");
+    }
+    if (!common)
+        throw io::InvalidInput(directory.string() +
+                               ": contains no summary.json or study.json, which record the command");
+    return *common;
+}
+
+/// Whether a path is a folder or lies in it. Both are canonical.
+bool contains(const fs::path& folder, const fs::path& path)
+{
+    return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+/// Where the results of the repetition are that belong to those of `directory`, which may be the folder of
+/// one of several integrators
+fs::path repetition_of(const fs::path& directory, const fs::path& output)
+{
+    const fs::path part = output / directory.filename();
+    std::error_code error;
+    return !record_in(output) && record_in(directory) && fs::is_directory(part, error) ? part : output;
+}
+
+/// The command with another output directory. --force and --resume are removed. Words behind "--" are no
+/// options.
 std::vector<std::string> with_output(const std::vector<std::string>& words, const std::string& output)
 {
     std::vector<std::string> all;
-    for (size_t k = 0; k < words.size(); ++k) {
+    size_t k = 0;
+    for (; k < words.size() && words[k] != "--"; ++k) {
         if (words[k] == "--output") {
             ++k;
         } else if (!words[k].starts_with("--output=") && words[k] != "--force" && words[k] != "--resume") {
@@ -61,6 +104,8 @@ std::vector<std::string> with_output(const std::vector<std::string>& words, cons
         }
     }
     all.insert(all.end(), {"--output", output});
+    all.insert(all.end(), words.begin() + static_cast<std::ptrdiff_t>(std::min(k, words.size())),
+               words.end());
     return all;
 }
 
@@ -113,9 +158,10 @@ int rerun(const RerunOptions& options)
     std::error_code error;
     if (!fs::is_directory(options.directory, error))
         throw io::InvalidInput(options.directory + ": is not a directory; hilda rerun needs a result");
+    const fs::path directory = fs::canonical(options.directory);
     const Record record = read_record(options.directory);
     std::vector<std::string> words = shell_words(record.command);
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(options.directory))
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory))
         if (entry.path().extension() == ".h5")
             throw io::InvalidInput(entry.path().string() +
                                    ": tables in HDF5 files are not compared; run again "
@@ -125,7 +171,14 @@ int rerun(const RerunOptions& options)
     if (name != "hilda" && name != "hilda-granular")
         throw io::InvalidInput(record.file + ": the command is of no program of HILDA: " + record.command);
     std::string output = options.output;
-    if (output.empty()) output = (fs::path(options.directory) / "").parent_path().string() + "-again";
+    if (output.empty()) {
+        const fs::path given = (fs::path(options.directory) / "").parent_path();
+        const bool has_name = given.has_filename() && given.filename() != "." && given.filename() != "..";
+        output = (has_name ? given : directory).string() + "-again";
+    }
+    if (contains(directory, fs::weakly_canonical(output)))
+        throw io::InvalidInput(output +
+                               ": is in the result that is repeated; --output selects another directory");
     if (!io::is_missing_or_empty(output))
         throw io::InvalidInput(output + ": the directory is not empty; --output selects another one");
     words = with_output(words, output);
@@ -136,7 +189,8 @@ int rerun(const RerunOptions& options)
     const int code = run(program, words);
     if (code != io::exit_code::done && code != io::exit_code::numerical_failure) return code;
     bool equal = true;
-    for (const FileComparison& file : compare_results(options.directory, output, options.tolerance)) {
+    for (const FileComparison& file :
+         compare_results(directory, repetition_of(directory, output), options.tolerance)) {
         std::cout << fmt::format("{}  {}: {}\n", file.is_equal ? "equal       " : "different   ", file.file,
                                  file.description);
         equal = equal && file.is_equal;

@@ -58,3 +58,50 @@ TEST_CASE("hilda rerun refuses a folder that is no result")
     CHECK(other.code == 3);
     CHECK_THAT(other.err, Contains("of no program of HILDA: rm -r x"));
 }
+
+TEST_CASE("hilda rerun repeats the results of several integrators, and of one of them")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"run", "double_pendulum", "--integrator", "rA-half-1,rA-half-2", "--end", "0.02",
+                      "--output", "a"})
+                .code == 0);
+    const Ended all = call(in, {"rerun", "a"});
+    INFO(all.out << all.err);
+    CHECK(all.code == 0);
+    CHECK_THAT(all.out, Contains("rA-half-1/trajectory.csv: identical") &&
+                            Contains("rA-half-2/trajectory.csv: identical"));
+    const Ended one = call(in, {"rerun", "a/rA-half-2", "--output", "b"});
+    INFO(one.out << one.err);
+    CHECK(one.code == 0);
+    CHECK_THAT(one.out, Contains("  trajectory.csv: identical"));
+
+    write(in / "a/rA-half-1/more.csv", "t\n0\n");
+    fs::remove(in / "a/rA-half-2/trajectory.csv");
+    const Ended changed = call(in, {"rerun", "a", "--output", "c"});
+    CHECK(changed.code == 6);
+    CHECK_THAT(changed.out, Contains("rA-half-1/more.csv: is missing when repeated") &&
+                                Contains("rA-half-2/trajectory.csv: exists only when repeated"));
+}
+
+TEST_CASE("hilda rerun writes beside the result, not into it")
+{
+    const Scratch in;
+    REQUIRE(call(in, {"run", "double_pendulum", "--end", "0.02", "--output", "a"}).code == 0);
+    CHECK_THAT(call(in, {"rerun", "a", "--output", "a/b"}).err,
+               Contains("a/b: is in the result that is repeated"));
+    const Ended here = call(in, {"rerun", "a/."});
+    INFO(here.out << here.err);
+    CHECK(here.code == 0);
+    CHECK(fs::exists(in / "a-again/trajectory.csv"));
+    CHECK_FALSE(fs::exists(in / "a/.-again"));
+
+    fs::remove_all(in / "a-again");
+    std::string summary = read(in / "a/summary.json");
+    const std::string command = "hilda run --end 0.02 --output a -- double_pendulum";
+    const size_t at = summary.find("\"command_line\": \"") + 17;
+    summary.replace(at, summary.find('"', at) - at, command);
+    write(in / "a/summary.json", summary);
+    const Ended behind = call(in, {"rerun", "a"});
+    INFO(behind.out << behind.err);
+    CHECK(behind.code == 0);
+}

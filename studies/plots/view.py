@@ -2,33 +2,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A page that animates the result of a run: bodies, joints, contacts and forces, or particles and boundaries, with curves.
 
-    view.py DIR OUTPUT [--geometry FILE] [--frames N] [--serve PORT]
+    view.py DIR OUTPUT [--geometry FILE] [--frames N] [--serve PORT] [--video SECONDS]
 
 reads the tables and frames in DIR, and writes the file OUTPUT, which needs no other file. FILE has the meshes, joints and lines
-of a model (Drawing::geometry). The page uses three.js. With --serve the page is not written, but served on 127.0.0.1; FILE is
-removed.
+of a model (Drawing::geometry); it is removed. The page uses three.js. With --serve the page is not written, but served on
+127.0.0.1. With --video OUTPUT is a video of the page, of this duration; 0: that of the run if it is from 3 to 30 s, else 10 s.
+Exit codes and messages are those of the program hilda.
 """
 import argparse
 import base64
-import csv
 import json
 import math
 import os
 import re
+import shutil
+import subprocess
 import sys
+import tempfile
 
-import numpy as np
+try:
+    import numpy as np
+except ImportError:
+    print("hilda: error: view: Python has no NumPy (Debian: apt-get install python3-numpy)", file=sys.stderr)
+    sys.exit(7)
+
+from result_files import Refused, folder_of_grains, frames_of, read_frame, read_json, read_table
 
 HERE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "viewer")
 LIBRARY = os.environ.get("HILDA_THREE", "/usr/share/javascript/three")
 POSE_BYTES, COLUMN_BYTES, GRAIN_BYTES = 16e6, 8e6, 18e6  # at most, before base64
 FLAT = 60    # a mesh with at most so many polygons has flat faces and edges
 MOST_CONTACTS = 200
+VIDEO_SIZE, VIDEO_RATE = (1280, 720), 25  # pixels, pictures per second
+PARTICLES = (("Points", "Points"), ("PointData", "velocity"), ("PointData", "radius"), ("PointData", "id"))
 UNITS = {"r": "m", "v": "m/s", "w": "rad/s", "a": "m/s²", "al": "rad/s²", "F": "N", "T": "N m"}
 
 
-class Refused(Exception):
-    """The results cannot be shown."""
+class Failed(Exception):
+    """The page or video cannot be written or served."""
+
+
+class NotInstalled(Exception):
+    """A program or library is missing."""
 
 
 def text64(values, kind):
@@ -40,52 +55,6 @@ def even(count, most):
     if count <= most:
         return np.arange(count)
     return np.unique(np.round(np.linspace(0, count - 1, max(int(most), 2))).astype(int))
-
-
-class Table:
-    """Columns of numbers by name"""
-
-    def __init__(self, names, rows):
-        self.names = names
-        self.rows = rows
-        self.index = {name: k for k, name in enumerate(names)}
-
-    def __getitem__(self, name):
-        return self.rows[:, self.index[name]]
-
-    def vectors(self, *names):
-        return np.stack([self[name] for name in names], axis=-1)
-
-
-def read_table(folder, name):
-    """The table NAME.csv, or of run.h5; None if there is none"""
-    path = os.path.join(folder, name + ".csv")
-    if os.path.isfile(path):
-        with open(path, encoding="utf-8", newline="") as file:
-            names = next(csv.reader([file.readline()]), [])
-            lines = [line for line in file if line.strip() and not line.startswith("#")]
-        try:
-            if lines and lines[-1].count(",") != lines[0].count(","):
-                lines.pop()  # a run that goes on has written a part of its last row
-            rows = np.array([[float(cell or "nan") for cell in cells] for cells in csv.reader(lines)], dtype=float)
-            if rows.size == 0 or rows.shape[1] != len(names):
-                raise ValueError
-        except ValueError:
-            raise Refused(f"{path}: has no rows, or rows that are not numbers") from None
-        return Table(names, rows)
-    path = os.path.join(folder, "run.h5")
-    if not os.path.isfile(path):
-        return None
-    try:
-        import h5py
-    except ImportError:
-        raise Refused(f"{path}: Python has no h5py (Debian: apt-get install python3-h5py)") from None
-    with h5py.File(path) as file:
-        if name not in file:
-            return None
-        columns = {key: np.asarray(values, dtype=float) for key, values in file[name].items()}
-    rows = min(len(values) for values in columns.values())
-    return Table(list(columns), np.stack([values[:rows] for values in columns.values()], axis=1))
 
 
 def quaternions(A):
@@ -184,14 +153,18 @@ def contacts_of(table, trajectory, rows):
 def mechanism(folder, geometry, most, box):
     """The poses, meshes, joints, lines and contacts of a run, and its tables"""
     table = read_table(folder, "trajectory")
+    if table is None:
+        raise Refused(f"{folder}: run.h5 has no trajectory")
     bodies = [name[:-3] for name in table.names if name.endswith(".rx")]
+    if bodies != geometry["bodies"]:
+        raise Refused(f"{table.path}: has the bodies {', '.join(bodies)}; those of model.json are {', '.join(geometry['bodies'])}")
     rows = even(len(table.rows), min(most, POSE_BYTES / (28 * max(len(bodies), 1))))
     elements = [f"A{i}{j}" for i in "123" for j in "123"]
     r = np.stack([table.vectors(*(f"{b}.r{c}" for c in "xyz")) for b in bodies], axis=1)[rows]
     A = np.stack([table.vectors(*(f"{b}.{e}" for e in elements)) for b in bodies], axis=1)[rows]
     A = A.reshape(len(rows), len(bodies), 3, 3)
     if not (np.isfinite(r).all() and np.isfinite(A).all()):
-        raise Refused(f"{folder}: trajectory: a pose is not finite")
+        raise Refused(f"{table.path}: a pose is not finite")
     poses = np.concatenate([r, quaternions(A)], axis=2)
     flips = np.sign(np.sum(poses[1:, :, 3:] * poses[:-1, :, 3:], axis=2))
     poses[1:, :, 3:] *= np.cumprod(np.where(flips == 0, 1, flips), axis=0)[:, :, None]
@@ -230,49 +203,6 @@ def mechanism(folder, geometry, most, box):
             "largest_motion": f"{bodies[body]}.r{'xyz'[axis]}"}, tables, table["t"]
 
 
-KINDS = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "UInt8": "u1", "Int64": "<i8"}
-
-
-def read_frame(path):
-    """The arrays of a file written by io::VtkPolyData, by section and name"""
-    with open(path, "rb") as file:
-        text = file.read()
-    begin = text.find(b"<AppendedData")
-    begin = text.find(b"_", begin) + 1
-    arrays, section = {}, ""
-    for tag, name in re.findall(rb"<(PointData|Points|Polys|Lines|Verts|CellData|DataArray)\b([^>]*)>", text[:begin]):
-        if tag != b"DataArray":
-            section = tag.decode()
-            continue
-        of = dict((k.decode(), v.decode()) for k, v in re.findall(rb'(\w+)="([^"]*)"', name))
-        at = begin + int(of["offset"])
-        size = int.from_bytes(text[at:at + 8], "little")
-        values = np.frombuffer(text, KINDS[of["type"]], size // np.dtype(KINDS[of["type"]]).itemsize, at + 8)
-        components = int(of.get("NumberOfComponents", "1"))
-        arrays[section, of["Name"]] = values.reshape(-1, components) if components > 1 else values
-    return arrays
-
-
-def frames_of(folder):
-    """The times and files of the parts of run.pvd: {part: [(t, path), ...]}"""
-    path = os.path.join(folder, "run.pvd")
-    parts = {}
-    if os.path.isfile(path):
-        with open(path, encoding="utf-8") as file:
-            for tag in re.findall(r"<DataSet\b([^>]*)/>", file.read()):
-                of = dict(re.findall(r'(\w+)="([^"]*)"', tag))
-                part = re.match(r"(?:vtk/)?([a-z]+)", of["file"]).group(1)
-                if os.path.isfile(os.path.join(folder, of["file"])):
-                    parts.setdefault(part, []).append((float(of["timestep"]), os.path.join(folder, of["file"])))
-    return parts
-
-
-def folder_of_grains(folder):
-    """The grains of a co-simulation have a folder in that of the mechanism."""
-    below = os.path.join(folder, "grains")
-    return below if os.path.isfile(os.path.join(below, "run.pvd")) else folder
-
-
 def u16(values, largest):
     """The ratio to the largest value as a 16-bit number"""
     return np.round(np.clip(np.asarray(values, dtype=float) / np.where(largest == 0, 1, largest), 0, 1) * 65535).astype(np.uint16)
@@ -280,12 +210,13 @@ def u16(values, largest):
 
 def grains(files, most, box):
     """The particles of the frames. Identifiers and radii that do not change are stored once."""
-    first = read_frame(files[0][1])
-    count = max(len(first["Points", "Points"]), len(read_frame(files[-1][1])["Points", "Points"]), 1)
+    count = max([len(read_frame(path, PARTICLES)["Points", "Points"]) for _, path in (files[0], files[-1])] + [1])
     files = [files[k] for k in even(len(files), min(most, max(2, GRAIN_BYTES / (8 * count))))]
     frames = []
     for _, path in files:
-        frame = read_frame(path)
+        frame = read_frame(path, PARTICLES)
+        if len({len(frame[name]) for name in PARTICLES}) != 1 or not np.isfinite(frame["Points", "Points"]).all():
+            raise Refused(f"{path}: has arrays of different lengths, or a position that is not finite")
         frames.append((frame["Points", "Points"], np.linalg.norm(frame["PointData", "velocity"], axis=1).astype(np.float32),
                        frame["PointData", "radius"], frame["PointData", "id"]))
         box.add(frames[-1][0])
@@ -314,9 +245,11 @@ def boundaries(files, most, box):
     files = [files[k] for k in even(len(files), most)]
     meshes, known, mesh_of_frame = [], {}, []
     for _, path in files:
-        frame = read_frame(path)
+        frame = read_frame(path, [("Points", "Points")])
         points = frame["Points", "Points"]
         connectivity, offsets = (frame.get(("Polys", name), np.zeros(0, int)) for name in ("connectivity", "offsets"))
+        if len(connectivity) and not 0 <= connectivity.min() <= connectivity.max() < len(points):
+            raise Refused(f"{path}: has a polygon with a point that does not exist")
         key = (points.tobytes(), connectivity.tobytes())
         if key not in known:
             known[key] = len(meshes)
@@ -332,8 +265,8 @@ def up_of(folder):
         path = os.path.join(folder, name)
         if not os.path.isfile(path):
             continue
-        with open(path, encoding="utf-8") as file:
-            gravity = json.load(file).get("gravity")
+        content = read_json(path)
+        gravity = content.get("gravity") if isinstance(content, dict) else None
         if isinstance(gravity, list) and len(gravity) == 3 and all(isinstance(g, (int, float)) for g in gravity):
             size = math.sqrt(sum(g * g for g in gravity))
             if size > 0:
@@ -361,7 +294,7 @@ def scene(folder, geometry, most):
     if "boundaries" in frames:
         parts["boundaries"] = boundaries(frames["boundaries"], most, box)
     run = read_table(grains_in, "run") if os.path.isfile(os.path.join(grains_in, "run.csv")) else None
-    if run is not None and "t" in run.index:
+    if run is not None:
         tables.append(columns_of(run, even(len(run.rows), most), COLUMN_BYTES / 2))
         curves += [column["name"] for column in tables[-1]["columns"][:2]] if not curves else []
         if not spans:
@@ -385,7 +318,7 @@ def read_text(*path):
             return file.read()
     except OSError as error:
         if path[0] == LIBRARY:
-            raise Refused(f"{error.filename}: three.js is missing (Debian: apt-get install libjs-three)") from None
+            raise NotInstalled(f"{error.filename}: three.js is missing (Debian: apt-get install libjs-three)") from None
         raise
 
 
@@ -422,7 +355,7 @@ def serve(folder, geometry, most, port):
             try:
                 at = stamp(folder)
                 self.send(200, "text/html", page({**scene(folder, geometry, most), "live": at}))
-            except (Refused, OSError) as error:
+            except (Refused, NotInstalled, OSError) as error:
                 self.send(503, "text/plain", str(error))
 
         def send(self, code, kind, text):
@@ -440,13 +373,75 @@ def serve(folder, geometry, most, port):
     try:
         server = ThreadingHTTPServer(("127.0.0.1", port), Handler)
     except OSError as error:
-        print(f"hilda: error: view: port {port} of 127.0.0.1: {error.strerror}; another one is chosen by --port", file=sys.stderr)
-        sys.exit(5)
+        raise Failed(f"view: port {port} of 127.0.0.1: {error.strerror}; another one is chosen by --port") from None
     print(f"serving       http://127.0.0.1:{server.server_port}/ (Ctrl-C ends it)", flush=True)
     try:
         server.serve_forever()
     except KeyboardInterrupt:
         pass
+
+
+def write_whole(path, text):
+    with open(path + ".new", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(path + ".new", path)
+
+
+def write_video(path, data, seconds):
+    """A video of the page, from its first to its last time"""
+    import browser
+    if not browser.is_installed():
+        raise NotInstalled("view: a video needs chromedriver (Debian: apt-get install chromium-driver)")
+    if shutil.which("ffmpeg") is None:
+        raise NotInstalled("view: a video needs ffmpeg (Debian: apt-get install ffmpeg)")
+    first, last = data["times"]
+    if seconds == 0:
+        seconds = last - first if 3 <= last - first <= 30 else 10.0
+    times = np.linspace(first, last, max(2, round(VIDEO_RATE * seconds)))
+    with tempfile.TemporaryDirectory() as folder, browser.Browser(*VIDEO_SIZE) as window:
+        write_whole(os.path.join(folder, "view.html"), page(data))
+        window.open("file://" + os.path.join(folder, "view.html"))
+        window.wait("viewer.ready || viewer.errors.length")
+        window.run("viewer.picture_only()")
+        words = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(VIDEO_RATE), "-c:v", "png", "-i", "-",
+                 "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-f", "mp4", path + ".new"]
+        with subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
+            try:
+                for n, t in enumerate(times):
+                    window.show_time(float(t))
+                    encoder.stdin.write(window.screenshot())
+                    if sys.stderr.isatty():
+                        print(f"\r{n + 1} of {len(times)} pictures", end="", file=sys.stderr, flush=True)
+            except BrokenPipeError:
+                pass  # ffmpeg has ended, with a message
+            finally:
+                _, message = encoder.communicate()
+                if sys.stderr.isatty():
+                    print("\r" + 40 * " ", end="\r", file=sys.stderr, flush=True)
+        errors = window.run("return viewer.errors")
+    if encoder.returncode != 0 or errors:
+        if os.path.exists(path + ".new"):
+            os.remove(path + ".new")
+        reason = "; ".join(errors) or message.decode(errors="replace").strip().replace("\n", "; ")
+        raise Failed(f"view: {path}: the video was not written: {reason}")
+    os.replace(path + ".new", path)
+    return f"{len(times)} pictures, {len(times) / VIDEO_RATE:g} s"
+
+
+def write(arguments):
+    geometry = None
+    if arguments.geometry:
+        geometry = read_json(arguments.geometry)
+        os.remove(arguments.geometry)
+    if arguments.serve is not None:
+        return serve(arguments.folder, geometry, arguments.frames, arguments.serve)
+    data = scene(arguments.folder, geometry, arguments.frames)
+    text = data["text"]
+    if arguments.video is not None:
+        text += ", " + write_video(arguments.output, data, arguments.video)
+    else:
+        write_whole(arguments.output, page(data))
+    print(f"written       {arguments.output}: {text}, {os.path.getsize(arguments.output) / 1e6:.1f} MB")
 
 
 def main():
@@ -456,26 +451,22 @@ def main():
     parser.add_argument("--geometry")
     parser.add_argument("--frames", type=int, default=1000)
     parser.add_argument("--serve", type=int)
-    arguments = parser.parse_args()
+    parser.add_argument("--video", type=float)
     try:
-        geometry = json.loads(read_text(arguments.geometry)) if arguments.geometry else None
-        if arguments.serve is not None:
-            if arguments.geometry:
-                os.remove(arguments.geometry)
-            return serve(arguments.folder, geometry, arguments.frames, arguments.serve)
-        data = scene(arguments.folder, geometry, arguments.frames)
-        text = page(data)
-        temporary = arguments.output + ".new"
-        with open(temporary, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, arguments.output)
+        write(parser.parse_args())
+        return
     except Refused as refused:
-        print(refused)
-        sys.exit(3)
+        code, text = 3, str(refused)
+    except NotInstalled as missing:
+        code, text = 7, str(missing)
+    except (Failed, RuntimeError, TimeoutError) as failed:
+        code, text = 5, str(failed).splitlines()[0]
     except OSError as error:
-        print(f"{error.filename}: {error.strerror}")
-        sys.exit(5)
-    print(data["text"])
+        code, text = 5, f"{error.filename}: {error.strerror}"
+    except KeyboardInterrupt:
+        code, text = 130, "view: interrupted; nothing was written"
+    print(f"hilda: error: {text}", file=sys.stderr)
+    sys.exit(code)
 
 
 if __name__ == "__main__":

@@ -239,8 +239,8 @@ private:
 
     void add_view()
     {
-        add_view_options(*add("view", "write a page that animates the result of a run in a browser",
-                              [this] { return view(shown); }),
+        add_view_options(*add("view", "write a page, or a video, that animates the result of a run",
+                              [this]() -> int { view(shown); }),
                          shown);
     }
 

@@ -169,11 +169,16 @@ void add_view_options(CLI::App& c, ViewOptions& to)
     c.add_option("DIR", to.directory, "output directory of a run, a co-simulation or a granular run")
         ->required()
         ->type_name("");
-    value(c, "--output", "FILE", "the page; default: view.html in DIR", assign(to.output, io::path));
+    value(c, "--output", "FILE", "the page or video; default: view.html or view.mp4 in DIR",
+          assign(to.output, io::path));
     value(c, "--frames", "N", "show at most N rows or frames, evenly chosen (default 1000)",
           assign(to.frames, [](const std::string& option, const std::string& text) {
               return io::count_up_to(100000, option, text);
           }));
+    c.add_flag("--mp4", to.video, "write a video, by Chromium and ffmpeg, instead of the page");
+    value(c, "--seconds", "S",
+          "duration of the video; default: that of the run if it is from 3 to 30 s, otherwise 10",
+          assign(to.seconds, positive_number));
     c.add_flag("--serve", to.serve,
                "serve the page on 127.0.0.1 until Ctrl-C; it follows a run that goes on");
     value(c, "--port", "N", "port of --serve (default 8000; 0: any free one)",

@@ -220,32 +220,11 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     return files;
 }
 
-namespace {
-
-std::vector<std::string> words_of(const std::string& script, const std::vector<std::string>& arguments)
+void start_script(const std::string& script, const std::vector<std::string>& arguments)
 {
     std::vector<std::string> words = {python(), no_bytecode, find_script(script)};
     if (words.back().empty()) throw io::NotAvailable("the script " + script + " was not found");
     words.insert(words.end(), arguments.begin(), arguments.end());
-    return words;
-}
-
-}  // namespace
-
-std::string run_script(const std::string& script, const std::vector<std::string>& arguments,
-                       double time_limit)
-{
-    const ProcessResult result = run(words_of(script, arguments), time_limit);
-    if (result.code == io::exit_code::invalid_input) throw io::InvalidInput(last_line(result.output));
-    if (result.code == io::exit_code::input_output) throw io::IoError(last_line(result.output));
-    const std::string why = failure_reason(result, time_limit);
-    if (!why.empty()) throw io::NotAvailable(script + ": " + why);
-    return last_line(result.output);
-}
-
-void start_script(const std::string& script, const std::vector<std::string>& arguments)
-{
-    std::vector<std::string> words = words_of(script, arguments);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);

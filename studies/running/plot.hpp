@@ -29,12 +29,8 @@ struct FigureOptions {
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options = {});
 
-/// Runs a script with these arguments, for example "view.py", and returns the last line of its output. Throws
-/// io::NotAvailable if Python, NumPy or the script is missing, or if it exceeds the time limit [s];
-/// io::InvalidInput and io::IoError with its message if it ends with the exit code of these exceptions.
-std::string run_script(const std::string& script, const std::vector<std::string>& arguments,
-                       double time_limit);
-/// Replaces this program by the script, which then has the terminal. Throws io::NotAvailable.
+/// Replaces this program by a script, for example "view.py", which then has the terminal, and whose messages
+/// and exit codes are those of the program. Throws io::NotAvailable if Python or the script is missing.
 [[noreturn]] void start_script(const std::string& script, const std::vector<std::string>& arguments);
 
 /// Removes the figure with this name, NAME.png, in all formats.

@@ -20,13 +20,14 @@ import zlib
 
 import numpy as np
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "studies", "plots"))
+import browser as chromium  # noqa: E402
 from browser import Browser  # noqa: E402
 
 HILDA = os.path.abspath(os.environ["HILDA_PROGRAM"])
 GRANULAR = os.path.join(os.path.dirname(HILDA), "hilda-granular")
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "examples")
-HAS_BROWSER = shutil.which("chromedriver") is not None
+HAS_BROWSER = chromium.is_installed()
 
 
 def hilda(*words, program=HILDA, expected=0):
@@ -212,16 +213,72 @@ class Pages(unittest.TestCase):
         with open(os.path.join(damaged, "trajectory.csv"), "a", encoding="utf-8") as file:
             file.write("1,what\n1,what\n")
         refused("trajectory.csv.*rows that are not numbers", damaged)
+        self.refuse_changed_tables(refused)
+        self.refuse_changed_frames(refused)
+        refused("either --mp4 or --serve", self.pendulum, "--mp4", "--serve", code=2)
+        refused("--seconds needs --mp4", self.pendulum, "--seconds", "3", code=2)
         note = self.folder("note.txt")
         with open(note, "w", encoding="utf-8") as file:
             file.write("mine")
         refused("is no page of hilda view; it is not replaced", self.pendulum, "--output", note)
+        refused("is no MP4 video; it is not replaced", self.pendulum, "--output", note, "--mp4")
         refused("--frames", self.pendulum, "--frames", "0", code=2)
         # without three.js
         environment = {**os.environ, "HILDA_THREE": self.folder("empty")}
         done = subprocess.run([HILDA, "view", self.pendulum], capture_output=True, text=True, env=environment)
-        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.returncode, 7)
         self.assertIn("three.js is missing (Debian: apt-get install libjs-three)", done.stderr)
+
+    def changed(self, folder, name, change):
+        """A copy of the folder in which a file has other bytes"""
+        copy = tempfile.mkdtemp(dir=self.root)
+        shutil.copytree(folder, copy, dirs_exist_ok=True)
+        path = os.path.join(copy, name)
+        with open(path, "rb") as file:
+            content = file.read()
+        with open(path, "wb") as file:
+            file.write(change(content))
+        return copy
+
+    def refuse_changed_tables(self, refused):
+        def table(change):
+            return self.changed(self.pendulum, "trajectory.csv", change)
+        refused("trajectory.csv.*there is no column t", table(lambda text: text.replace(b"t,", b"x,", 1)))
+        refused("trajectory.csv.*there is no column bar_1.A23", table(lambda text: text.replace(b"bar_1.A23", b"x", 1)))
+        refused("trajectory.csv.*t is not a finite number in row 1", table(lambda text: text.replace(b"\n0,", b"\nnan,", 1)))
+        refused("trajectory.csv.*UTF-8", table(lambda text: text + b"\xff\n"))
+        refused("has the bodies .*arm.*; those of model.json are bar_1", table(lambda text: text.replace(b"bar_1.", b"arm.")))
+        refused("model.json", self.changed(self.pendulum, "model.json", lambda text: text[:100]))
+        copy = self.changed(self.pendulum, "trajectory.csv", lambda text: text)
+        os.rename(os.path.join(copy, "trajectory.csv"), os.path.join(copy, "run.h5"))
+        refused("run.h5: cannot be read", copy)
+
+    def refuse_changed_frames(self, refused):
+        def frames(change):
+            return self.changed(self.grains, "run.pvd", change)
+        refused("run.pvd: is not a list of frames", frames(lambda text: text[:-30]))
+        refused("run.pvd: is not a list of frames", frames(lambda text: text.replace(b"file=", b"of=")))
+        name = next(name for name in sorted(os.listdir(os.path.join(self.grains, "vtk"))) if name.startswith("particles"))
+
+        def frame(change):
+            return self.changed(self.grains, os.path.join("vtk", name), change)
+        refused(name + ": is not a frame of HILDA: Points has no array Points", frame(lambda _: b""))
+        refused(name + ": is incomplete, or not a frame", frame(lambda text: text[:len(text) // 2]))
+        refused(name + ": is not a frame of HILDA: PointData has no array radius",
+                frame(lambda text: text.replace(b'"radius"', b'"other"')))
+        self.assertEqual([name for name in os.listdir(self.grains) if ".geometry-" in name], [])
+
+    @unittest.skipUnless(HAS_BROWSER and shutil.which("ffmpeg"), "chromedriver or ffmpeg is not installed")
+    def test_video(self):
+        said = hilda("view", self.pendulum, "--mp4", "--seconds", "1")
+        self.assertIn("25 pictures, 1 s", said)
+        video = os.path.join(self.pendulum, "view.mp4")
+        decoded = subprocess.run(["ffmpeg", "-loglevel", "error", "-i", video, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                                 capture_output=True, check=True).stdout
+        images = np.frombuffer(decoded, np.uint8).reshape(-1, 720, 1280, 3)
+        self.assertEqual(len(images), 25)
+        self.assertGreater(np.count_nonzero(abs(images[0].astype(int) - images[-1]) > 60), 3000)  # the pendulum has moved
+        hilda("view", self.pendulum, "--mp4", "--seconds", "0.2")  # replaces a video
 
     def test_server(self):
         import urllib.error

@@ -190,6 +190,13 @@ function start(data) {
     if (on && viewer.t >= last) set_time(first);
   };
   viewer.set_time = set_time;
+  // Only the picture and its time, for a video
+  viewer.picture_only = () => {
+    document.body.classList.add('picture');
+    space.append(element('clock'));
+    resize();
+    look('default');
+  };
   viewer.frames = 0;
 
   element('name').innerHTML = '<b></b><br><span></span>';

@@ -14,7 +14,6 @@
 
 #include <charconv>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <map>
 
@@ -88,38 +87,27 @@ std::string geometry(const fs::path& directory)
         if (has_file(directory / "trajectory.csv"))
             extend(patches, directory / "trajectory.csv", d.model->all_bodies());
     }
-    return drawing.geometry(patches.meshes()).text();
+    io::Json all = drawing.geometry(patches.meshes());
+    all["bodies"] = io::Json::array();
+    for (const dae::Body& body : d.model->all_bodies()) all["bodies"].push_back(body.name);
+    return all.text();
 }
 
-/// A file that is removed at the end
-class TemporaryFile {
-public:
-    TemporaryFile(std::string path, const std::string& content) : path(std::move(path))
-    {
-        io::write_file(this->path, content);
-    }
-    ~TemporaryFile()
-    {
-        std::error_code error;
-        fs::remove(path, error);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    const std::string path;
-};
-
-void refuse_other_file(const std::string& output)
+/// Refuses to replace a file that is no page, or no video.
+void refuse_other_file(const std::string& output, bool video)
 {
     if (!has_file(output)) return;
     const std::string text = io::read_file(output, std::numeric_limits<size_t>::max());
-    if (!text.starts_with("<!DOCTYPE html>"))
-        throw io::InvalidInput(output + ": the file exists and is no page of hilda view; it is not replaced");
+    const bool is_same =
+        video ? std::string_view(text).substr(0, 12).find("ftyp") == 4 : text.starts_with("<!DOCTYPE html>");
+    if (!is_same)
+        throw io::InvalidInput(output + ": the file exists and is no " +
+                               (video ? "MP4 video" : "page of hilda view") + "; it is not replaced");
 }
 
 }  // namespace
 
-int view(const ViewOptions& options)
+void view(const ViewOptions& options)
 {
     const fs::path directory = options.directory;
     std::error_code error;
@@ -134,24 +122,24 @@ int view(const ViewOptions& options)
     if (is_run && !has_file(directory / "model.json"))
         throw io::InvalidInput(options.directory +
                                ": contains no model.json, from which the bodies are drawn");
-    const std::string output = options.output.empty() ? (directory / "view.html").string() : options.output;
-    refuse_other_file(output);
+    if (options.video && options.serve) throw io::UsageError("view: use either --mp4 or --serve");
+    if (options.seconds > 0 && !options.video) throw io::UsageError("view: --seconds needs --mp4");
+    const std::string output = !options.output.empty()
+                                   ? options.output
+                                   : (directory / (options.video ? "view.mp4" : "view.html")).string();
+    if (!options.serve) refuse_other_file(output, options.video);
 
     std::vector<std::string> words = {options.directory, output, "--frames",
                                       fmt::format("{}", options.frames)};
-    std::optional<TemporaryFile> drawn;
+    if (options.serve) words.insert(words.end(), {"--serve", fmt::format("{}", options.port)});
+    if (options.video) words.insert(words.end(), {"--video", fmt::format("{}", options.seconds)});
     if (is_run) {
-        drawn.emplace(fmt::format("{}.geometry-{}.json", output, getpid()), geometry(directory));
-        words.insert(words.end(), {"--geometry", drawn->path});
+        // The script removes it.
+        const std::string file = fmt::format("{}.geometry-{}.json", output, getpid());
+        io::write_file(file, geometry(directory));
+        words.insert(words.end(), {"--geometry", file});
     }
-    if (options.serve) {
-        words.insert(words.end(), {"--serve", fmt::format("{}", options.port)});
-        start_script("view.py", words);
-    }
-    const std::string what = run_script("view.py", words, time_limit);
-    std::cout << "written       " << output << ": " << what
-              << fmt::format(", {:.1f} MB\n", static_cast<double>(fs::file_size(output)) / 1e6);
-    return io::exit_code::done;
+    start_script("view.py", words);
 }
 
 }  // namespace hilda::studies

@@ -9,12 +9,15 @@ import urllib.error
 import urllib.request
 
 
+def is_installed():
+    return shutil.which("chromedriver") is not None
+
+
 class Browser:
-    """Chromium without a window. A context manager."""
+    """Chromium without a window, whose pages have this size [pixels]. A context manager. RuntimeError with its message."""
 
     def __init__(self, width=1280, height=800):
-        self.driver = subprocess.Popen([shutil.which("chromedriver"), "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                                       text=True)
+        self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         for line in self.driver.stdout:
             if "successfully on port " in line:
                 self.url = "http://127.0.0.1:" + line.rsplit(" ", 1)[1].strip().rstrip(".")
@@ -28,6 +31,8 @@ class Browser:
             self.driver.kill()
             raise
         self.url += "/session/" + answer["sessionId"]
+        self.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setDeviceMetricsOverride", "params": {
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
 
     def call(self, method, path, data=None):
         body = None if data is None else json.dumps(data).encode()
@@ -43,6 +48,11 @@ class Browser:
 
     def run(self, script, *arguments):
         return self.call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def show_time(self, t):
+        """Sets the time of a page of hilda view and waits until it is drawn."""
+        script = "viewer.set_time(arguments[0]); const done = arguments[1]; requestAnimationFrame(() => requestAnimationFrame(() => done()))"
+        self.call("POST", "/execute/async", {"script": script, "args": [t]})
 
     def wait(self, condition, seconds=20):
         """Waits until the expression is true. Returns the time [s]."""

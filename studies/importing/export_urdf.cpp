@@ -15,6 +15,7 @@
 #include <iostream>
 #include <map>
 #include <queue>
+#include <set>
 
 namespace hilda::studies {
 
@@ -78,8 +79,11 @@ public:
     {
         read();
         find_parents();
-        std::string all = fmt::format(
-            "<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"world\"/>\n", quoted(d.name));
+        for (const dae::Body& of : body) link_names.insert(of.name);
+        for (const Joint& of : joint) joint_names.insert(of.name);
+        root = unused("world", link_names);
+        std::string all = fmt::format("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"{}\"/>\n",
+                                      quoted(d.name), root);
         for (size_t n = 0; n < body.size(); ++n) all += link(static_cast<int>(n));
         for (size_t n = 0; n < body.size(); ++n) all += joint_of(static_cast<int>(n));
         return all + "</robot>\n";
@@ -200,15 +204,24 @@ private:
             J(1, 2), J(2, 2));
     }
 
-    std::string joint_of(int n) const
+    /// The name, with a number if it is one of these, to which it is added
+    static std::string unused(const std::string& name, std::set<std::string>& names)
+    {
+        std::string own = name;
+        for (int k = 2; !names.insert(own).second; ++k) own = fmt::format("{}_{}", name, k);
+        return own;
+    }
+
+    std::string joint_of(int n)
     {
         const lie::Motion& own = d.x.body[n];
         const Vec3 at = own.r + own.A * frame_at(n);
         if (parent_joint[n] < 0)
             return fmt::format(
-                "  <joint name=\"{0}_free\" type=\"floating\"><parent link=\"world\"/>"
-                "<child link=\"{0}\"/>{1}</joint>\n",
-                quoted(body[n].name), origin(at, own.A));
+                "  <joint name=\"{}\" type=\"floating\"><parent link=\"{}\"/>"
+                "<child link=\"{}\"/>{}</joint>\n",
+                quoted(unused(body[n].name + "_free", joint_names)), root, quoted(body[n].name),
+                origin(at, own.A));
         const Joint& of = joint[parent_joint[n]];
         const int p = is_reversed(n) ? of.j : of.i;
         lie::Motion parent;
@@ -218,7 +231,7 @@ private:
         const char* const type = is_fixed ? "fixed" : is_revolute ? "continuous" : "prismatic";
         std::string all = fmt::format(
             "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/><child link=\"{}\"/>\n    {}\n",
-            quoted(of.name), type, p < 0 ? "world" : quoted(body[p].name), quoted(body[n].name),
+            quoted(of.name), type, p < 0 ? root : quoted(body[p].name), quoted(body[n].name),
             origin(parent.A.transpose() * (at - from), parent.A.transpose() * own.A));
         if (!is_fixed) {
             const Vec3 axis = (is_reversed(n) ? of.axis_i : of.axis_j).normalized();
@@ -235,6 +248,8 @@ private:
     std::vector<std::string>& left_out;
     const io::JsonSource source;
     std::vector<Joint> joint;
+    std::set<std::string> link_names, joint_names;
+    std::string root;               ///< name of the link of the ground
     std::vector<int> parent_joint;  ///< of each body: index in `joint`; -1: free
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace hilda::studies {
 
@@ -59,8 +60,8 @@ public:
         for (size_t n = 0; n < body.size(); ++n)
             if (moves(n)) add_joints(n);
         for (const ImportedLoop& loop : from.loops) {
-            io::Json one =
-                pair(loop.name, loop.is_weld ? "fixed" : "spherical", owner(loop.i), owner(loop.j));
+            io::Json one = pair(loop.name, loop.is_weld ? "fixed" : "spherical", owner(loop.i), owner(loop.j),
+                                constraint_names);
             if (!loop.is_weld) add_points(one, owner(loop.i), loop.point, owner(loop.j), loop.point);
             constraints.push_back(std::move(one));
         }
@@ -128,10 +129,14 @@ private:
     {
         return n < 0 ? p : in_body(n, p - body[static_cast<size_t>(n)].r);
     }
-    io::Json pair(const std::string& name, const std::string& type, int i, int j) const
+    /// `names`: of the entries before. A name that is among them gets a number.
+    io::Json pair(const std::string& name, const std::string& type, int i, int j,
+                  std::set<std::string>& names) const
     {
         if (i == j) refuse("'" + name + "'", "its two bodies are welded together");
-        return {{"name", name}, {"type", type}, {"body_i", name_of(i)}, {"body_j", name_of(j)}};
+        std::string own = name;
+        for (int k = 2; !names.insert(own).second; ++k) own = fmt::format("{}_{}", name, k);
+        return {{"name", own}, {"type", type}, {"body_i", name_of(i)}, {"body_j", name_of(j)}};
     }
     void add_points(io::Json& to, int i, const Vec3& P, int j, const Vec3& Q) const
     {
@@ -150,7 +155,7 @@ private:
         const std::vector<ImportedJoint>& joints = body[n].joints;
         const std::string name = joint_name(joints);
         const auto add = [&](const char* type, const Vec3& anchor, const Vec3* axis_i, const Vec3* axis_j) {
-            io::Json one = pair(name, type, i, j);
+            io::Json one = pair(name, type, i, j, constraint_names);
             add_points(one, i, anchor, j, anchor);
             if (axis_i != nullptr) add_axes(one, i, *axis_i, j, *axis_j);
             constraints.push_back(std::move(one));
@@ -237,7 +242,7 @@ private:
         for (const ImportedJoint& joint : joints) {
             if (joint.stiffness == 0 && joint.damping == 0) continue;
             const bool is_hinge = joint.type == ImportedJoint::hinge;
-            io::Json one = pair(joint.name, is_hinge ? "torsion-spring" : "spring-damper", i, j);
+            io::Json one = pair(joint.name, is_hinge ? "torsion-spring" : "spring-damper", i, j, force_names);
             one["stiffness"] = joint.stiffness;
             one["damping"] = joint.damping;
             if (is_hinge) {
@@ -257,6 +262,7 @@ private:
     const std::string& file;
     std::vector<ImportedBody> body;
     std::vector<int> owners;
+    std::set<std::string> constraint_names, force_names;
     io::Json constraints = io::Json::array(), forces = io::Json::array();
 };
 

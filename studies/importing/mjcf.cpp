@@ -45,6 +45,7 @@ public:
         to.gravity =
             (model->opt.disableflags & mjDSBL_GRAVITY) != 0 ? Vec3::Zero() : vector(model->opt.gravity);
         for (int b = 1; b < model->nbody; ++b) add_body(b);
+        if (free_base) make_base_free();
         for (int e = 0; e < model->neq; ++e) add_loop(e);
         warn();
     }
@@ -68,9 +69,22 @@ private:
         body.J_bar = vector(model->body_inertia + 3 * b).asDiagonal();
         const int first = model->body_jntadr[b];
         for (int j = first; j < first + model->body_jntnum[b]; ++j) body.joints.push_back(joint(j));
-        if (b == 1 && free_base && body.joints.empty())
-            body.joints.push_back({.name = "base", .type = ImportedJoint::free});
         to.bodies.push_back(body);
+    }
+
+    /// The base is the body of the world that has no joint.
+    void make_base_free()
+    {
+        ImportedBody* base = nullptr;
+        for (ImportedBody& body : to.bodies) {
+            if (body.parent >= 0 || !body.joints.empty()) continue;
+            if (base != nullptr)
+                refuse("--base free: the bodies '" + base->name + "' and '" + body.name +
+                       "' of the world have no joint; give the base a freejoint in the file");
+            base = &body;
+        }
+        if (base == nullptr) refuse("--base free: each body of the world has a joint");
+        base->joints.push_back({.name = "base", .type = ImportedJoint::free});
     }
 
     ImportedJoint joint(int j)
@@ -117,9 +131,27 @@ private:
         ImportedLoop loop{.name = name, .is_weld = type == mjEQ_WELD, .i = b1 - 1, .j = b2 - 1};
         loop.point = vector(data->xpos + 3 * b1) +
                      matrix(data->xmat + 9 * b1) * vector(model->eq_data + mjNEQDATA * e);
-        if (loop.is_weld)
-            to.warnings.push_back("relpose of equality '" + name + "'; the pose of qpos0 is kept");
+        if (loop.is_weld) compare_pose(e, name);
         to.loops.push_back(loop);
+    }
+
+    /// Warns if the pose of qpos0, which HILDA keeps, is not that of a weld.
+    void compare_pose(int e, const std::string& name)
+    {
+        const int b1 = model->eq_obj1id[e], b2 = model->eq_obj2id[e];
+        const mjtNum* const of = model->eq_data + mjNEQDATA * e;  // point of b2, point of b1, quaternion
+        const Mat3 A1 = matrix(data->xmat + 9 * b1), A2 = matrix(data->xmat + 9 * b2);
+        std::array<mjtNum, 9> turn{};
+        mju_quat2Mat(turn.data(), of + 6);
+        const double gap = (vector(data->xpos + 3 * b1) + A1 * vector(of + 3) - vector(data->xpos + 3 * b2) -
+                            A2 * vector(of))
+                               .norm();
+        const double angle = Eigen::AngleAxisd(Mat3((A1 * matrix(turn.data())).transpose() * A2)).angle();
+        if (gap > 1e-6 || angle > 1e-6)
+            to.warnings.push_back(
+                fmt::format("relpose of equality '{}', from which qpos0 differs by {:.3g} m and {:.3g} rad; "
+                            "the pose of qpos0 is kept",
+                            name, gap, angle));
     }
 
     void warn()
@@ -131,7 +163,8 @@ private:
         bool can_collide = false;
         for (int g = 0; g < model->ngeom; ++g)
             can_collide = can_collide || model->geom_contype[g] != 0 || model->geom_conaffinity[g] != 0;
-        if (can_collide && model->ngeom > 1) to.warnings.emplace_back("contacts between geoms");
+        if ((can_collide && model->ngeom > 1) || model->npair > 0)
+            to.warnings.emplace_back("contacts between geoms");
         if (model->nu > 0) to.warnings.emplace_back("actuators");
         if (model->nkey > 0)
             to.warnings.emplace_back("keyframes; the initial state is that of qpos0 at rest");

@@ -138,6 +138,47 @@ class Import(unittest.TestCase):
         self.assertIn("3 bodies with 1 degree of freedom", text)
         self.assertIn("not imported: contacts between geoms", text)
 
+    def test_welds(self):
+        """A pose of a weld that is not that of qpos0 is named."""
+        text = """<mujoco><worldbody>
+            <body name="a" pos="1 0 0" euler="0 0 30"><freejoint/><geom size="0.1"/></body>
+            <body name="b" pos="2 0 0.5" euler="40 0 0"><freejoint/><geom size="0.1"/></body></worldbody>
+            <equality><weld name="w" body1="a" body2="b"/></equality></mujoco>"""
+        model, said = self.imported(self.written(text))
+        self.assertNotIn("relpose", said)
+        self.assertIn("2 bodies with 6 degrees of freedom", said)
+        _, said = self.imported(self.written(text.replace('body2="b"', 'body2="b" relpose="1 0 0 1 0 0 0"')))
+        self.assertRegex(said, "relpose of equality 'w', from which qpos0 differs by 0.7[0-9]* m and 0.8[0-9]* rad")
+
+    def test_names(self):
+        """A joint and an equality of one name; a body that is named like the root of a URDF file."""
+        model, _ = self.imported(self.written("""<mujoco><worldbody>
+            <body name="a"><joint name="pin" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body>
+            <body name="b" pos="1 0 0"><freejoint/><geom size="0.1"/></body></worldbody>
+            <equality><connect name="pin" body1="a" body2="b" anchor="1 0 0"/></equality></mujoco>"""))
+        self.assertEqual([c["name"] for c in model["constraints"]], ["pin", "pin_2"])
+        inertia = {"mass": 1, "inertia": [1, 1, 1]}
+        model = {"hilda_model": 1, "name": "odd", "bodies": [
+            {"name": "world", "r": [1, 0, 0], **inertia}, {"name": "a", "r": [2, 0, 0], **inertia}],
+            "constraints": [{"name": "a_free", "type": "revolute", "body_i": "ground", "body_j": "world",
+                             "axis_bar_i": [0, 1, 0], "axis_bar_j": [0, 1, 0], "s_bar_q_j": [-1, 0, 0]}]}
+        run(HILDA, "export", self.written(json.dumps(model), "odd.json"), "--output", self.path("odd.urdf"))
+        again, said = self.imported(self.path("odd.urdf"))
+        self.assertEqual([body["name"] for body in again["bodies"]], ["world", "a"])
+        self.assertIn("7 degrees of freedom", said)
+
+    def test_free_base(self):
+        text = """<mujoco><worldbody><body name="turntable"><joint axis="0 0 1"/><geom size="0.1" pos="1 0 0"/></body>
+            <body name="base" pos="0 0 1"><geom size="0.1"/></body></worldbody></mujoco>"""
+        _, said = self.imported(self.written(text), "--base", "free")
+        self.assertIn("2 bodies with 7 degrees of freedom", said)
+        one = text.replace('<geom size="0.1"/></body>', '<joint/><geom size="0.1"/></body>')
+        self.assertIn("--base free: each body of the world has a joint",
+                      run(HILDA, "import", self.written(one), "--base", "free", expected=3))
+        two = text.replace('<joint axis="0 0 1"/>', "")
+        self.assertIn("--base free: the bodies 'turntable' and 'base' of the world have no joint",
+                      run(HILDA, "import", self.written(two), "--base", "free", expected=3))
+
     def test_flags(self):
         text = """<mujoco><option><flag passive="disable" equality="disable"/></option><worldbody>
             <body name="a"><joint axis="0 1 0" stiffness="5" damping="2"/><geom size="0.1" pos="1 0 0"/></body>

@@ -10,7 +10,7 @@
 
 namespace hilda::io {
 
-void* module_symbol(const std::string& what, const ModuleFile& file, const char* symbol)
+std::string find_module(const ModuleFile& file)
 {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -19,15 +19,19 @@ void* module_symbol(const std::string& what, const ModuleFile& file, const char*
     Dl_info here{};
     if (dladdr(file.caller, &here) != 0 && here.dli_fname[0] == '/')
         places.push_back(fs::path(here.dli_fname).parent_path() / "hilda");
-    for (const fs::path& place : places) {
-        if (!fs::is_regular_file(place / file.name, error)) continue;
-        void* const loaded =
-            dlopen((place / file.name).c_str(), RTLD_NOW | (file.global ? RTLD_GLOBAL : RTLD_LOCAL));
-        void* const found = loaded == nullptr ? nullptr : dlsym(loaded, symbol);
-        if (found == nullptr) throw NotAvailable(what + ": " + dlerror());
-        return found;
-    }
-    return nullptr;
+    for (const fs::path& place : places)
+        if (fs::is_regular_file(place / file.name, error)) return place / file.name;
+    return "";
+}
+
+void* module_symbol(const std::string& what, const ModuleFile& file, const char* symbol)
+{
+    const std::string path = find_module(file);
+    if (path.empty()) return nullptr;
+    void* const loaded = dlopen(path.c_str(), RTLD_NOW | (file.global ? RTLD_GLOBAL : RTLD_LOCAL));
+    void* const found = loaded == nullptr ? nullptr : dlsym(loaded, symbol);
+    if (found == nullptr) throw NotAvailable(what + ": " + dlerror());
+    return found;
 }
 
 }  // namespace hilda::io

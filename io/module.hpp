@@ -15,9 +15,12 @@ struct ModuleFile {
     bool global = false;         ///< whether libraries that are loaded later use the symbols of its libraries
 };
 
-/// Loads a module and returns a symbol of it; nullptr if there is no such file. It is searched beside the
-/// program (in the build folder, also of the tests), in lib/hilda of the installation, and in hilda/ beside
-/// the library of the caller. Throws NotAvailable "WHAT: ..." if it cannot be loaded.
+/// Path of a module; empty if there is no such file. It is searched beside the program (in the build folder,
+/// also of the tests), in lib/hilda of the installation, and in hilda/ beside the library of the caller.
+std::string find_module(const ModuleFile& file);
+
+/// Loads a module and returns a symbol of it; nullptr if there is no such file. Throws NotAvailable
+/// "WHAT: ..." if it cannot be loaded.
 void* module_symbol(const std::string& what, const ModuleFile& file, const char* symbol);
 
 }  // namespace hilda::io

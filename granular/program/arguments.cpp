@@ -48,7 +48,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
 {
     std::string step, end, interval, every;
     CLI::App app("hilda-granular: runs a granular case or a validation");
-    app.set_version_flag("--version", version_line());
+    app.set_version_flag("--version", version_line() + "\n" + build_line());
     /// An option with one value, which `set` receives after the name of the option
     const auto value = [&](const std::string& name, const char* kind, const char* what, const auto& set) {
         return app

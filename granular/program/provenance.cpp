@@ -29,6 +29,12 @@ std::string version_line()
            (*build::added_laws != '\0' ? std::string(", added laws: ") + build::added_laws : "");
 }
 
+std::string build_line()
+{
+    return std::string("build: ") + build::compiler + ", " + build::flags + "\ndevices: CPU" +
+           (*build::cuda != '\0' ? std::string(", CUDA ") + build::cuda : "; built without CUDA");
+}
+
 io::Json provenance(const std::string& command_line, int threads, const std::string& device)
 {
     std::vector<std::pair<std::string, std::string>> libraries = {

@@ -9,6 +9,8 @@ namespace hilda::granular {
 
 /// "hilda-granular VERSION (git STATE, BUILD TYPE)"
 std::string version_line();
+/// Compiler, flags and devices
+std::string build_line();
 
 /// Version, build, libraries, command line, processor, threads and device
 io::Json provenance(const std::string& command_line, int threads, const std::string& device);

@@ -96,7 +96,8 @@ public:
             return [this] { return help_of("", ""); };
         } catch (const CLI::CallForVersion&) {
             return [] {
-                std::cout << version_line() << '\n';
+                std::cout << version_line() << "\nbuild: " << build_line()
+                          << "\nmodules: " << modules_line() << '\n';
                 return io::exit_code::done;
             };
         } catch (const CLI::ExtrasError&) {

@@ -49,7 +49,8 @@ int info(bool json, const std::string& command_line)
         std::cout << fmt::format("{:<14}{}\n", what, text);
     };
     line("version", fmt::format("{}, git {}", version::number, version::git));
-    line("build", fmt::format("{}, {}, {}", version::build_type, version::compiler, version::flags));
+    line("build", build_line());
+    line("modules", modules_line());
     std::string versions;
     for (const auto& [name, number] : libraries())
         versions += (versions.empty() ? "" : ", ") + name + ' ' + number;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/provenance.hpp"
 
+#include "io/module.hpp"
 #include "io/provenance.hpp"
 
 #include <fmt/format.h>
@@ -22,6 +23,28 @@ std::vector<std::pair<std::string, std::string>> libraries()
 }
 
 std::string version_line() { return fmt::format("hilda {} ({})", version::number, version::git); }
+
+std::string build_line()
+{
+    return fmt::format("{}, {}, {}", version::build_type, version::compiler, version::flags);
+}
+
+std::string modules_line()
+{
+    std::string present, missing;
+    for (const auto& [name, file] : {std::pair{"HDF5", "hilda-hdf5.so"},
+                                     {"MPI", "hilda-mpi.so"},
+                                     {"URDF", "hilda-urdf.so"},
+                                     {"MJCF", "hilda-mjcf.so"}}) {
+        const bool exists = !io::find_module({.name = file,
+                                              .library_folder = HILDA_LIBRARY_FOLDER,
+                                              .caller = reinterpret_cast<const void*>(&modules_line)})
+                                 .empty();
+        std::string& to = exists ? present : missing;
+        to += (to.empty() ? "" : ", ") + std::string(name);
+    }
+    return (present.empty() ? "none" : present) + (missing.empty() ? "" : "; missing: " + missing);
+}
 
 io::Json provenance(const std::string& command_line, int threads)
 {

@@ -85,6 +85,8 @@ TEST_CASE("the program lists models, integrators, studies and versions", "[studi
         CHECK(ended.err.empty());
     };
     lists({"--version"}, "hilda 0.");
+    lists({"--version"}, "build: ");
+    lists({"--version"}, "modules: HDF5");
     lists({"--help"}, "integrators");
     lists({"help"}, "integrators");
     for (const char* command : {"run", "check", "models", "integrators", "study", "plot", "info"}) {

@@ -125,6 +125,7 @@ const std::map<std::string, std::set<std::string>> folders = {
       "plots/viewer",
       "problems",
       "program",
+      "fitting",
       "repeating",
       "running",
       "running/events",

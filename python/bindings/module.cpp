@@ -3,6 +3,7 @@
 
 #include "hilda/version.hpp"
 #include "python/bindings/errors.hpp"
+#include "python/bindings/fit.hpp"
 #include "python/bindings/model.hpp"
 #include "python/bindings/run.hpp"
 #include "python/bindings/state.hpp"
@@ -17,4 +18,5 @@ PYBIND11_MODULE(_hilda, m)
     define_model(m);
     define_system(m);
     define_run(m);
+    define_fit(m);
 }

@@ -9,12 +9,13 @@
 from . import errors, so3  # before the extension module, which raises them
 from ._hilda import Saddle, State, System, __version__
 from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailure, UsageError
+from .fitting import Fit, fit
 from .integrator import Integrator
 from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
 from .parameters import Sweep, sweep
 from .result import BodyResult, Result
 
-__all__ = ["BodyResult", "Convergence", "Error", "FileError", "Integrator", "InvalidInput", "Model", "NotAvailable",
+__all__ = ["BodyResult", "Convergence", "Error", "FileError", "Fit", "Integrator", "InvalidInput", "Model", "NotAvailable",
            "NumericalFailure", "Result", "Saddle", "State", "Sweep", "System", "UsageError", "__version__", "convergence",
-           "errors", "integrators", "problems", "run", "so3", "sweep"]
+           "errors", "fit", "integrators", "problems", "run", "so3", "sweep"]

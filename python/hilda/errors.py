@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .fitting import Fit
     from .result import Result
 
 
@@ -35,12 +36,14 @@ class NumericalFailure(Error, ArithmeticError):
     Attributes:
         status: short name of the failure, such as "newton_diverged".
         result: the Result up to the time that a run reached, or None.
+        fit: the Fit with the last values of a fit that has not reached the minimum, or None.
     """
 
     def __init__(self, status: str, message: str) -> None:
         super().__init__(message)
         self.status = status
         self.result: Result | None = None
+        self.fit: Fit | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.status, str(self)), self.__dict__

@@ -70,6 +70,7 @@ public:
         add_schema();
         add_study();
         add_collect();
+        add_fit();
         add_reproduce();
         add_granular();
         add_plot();
@@ -96,8 +97,8 @@ public:
             return [this] { return help_of("", ""); };
         } catch (const CLI::CallForVersion&) {
             return [] {
-                std::cout << version_line() << "\nbuild: " << build_line()
-                          << "\nmodules: " << modules_line() << '\n';
+                std::cout << version_line() << "\nbuild: " << build_line() << "\nmodules: " << modules_line()
+                          << '\n';
                 return io::exit_code::done;
             };
         } catch (const CLI::ExtrasError&) {
@@ -190,6 +191,14 @@ private:
             add("study", "run a study: table, CSV files and figures; without KIND: list the studies",
                 [this] { return kind.empty() ? list_studies(study.json) : run_study(kind, study); });
         add_study_options(*c, kind, study);
+    }
+
+    void add_fit()
+    {
+        fitted.command_line = command_line_text;
+        add_fit_options(*add("fit", "fit numbers of a model to measured values, with their uncertainty",
+                             [this] { return fit_model(fitted); }),
+                        fitted);
     }
 
     void add_collect()
@@ -377,6 +386,7 @@ private:
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load
     std::string name, write_to, kind, directory;
     FigureOptions figures;  ///< of hilda plot
+    FitOptions fitted;
     ViewOptions shown;
     RerunOptions repeated;
     ImportOptions imported;

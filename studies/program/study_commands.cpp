@@ -116,6 +116,40 @@ void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
     c.add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
 }
 
+void add_fit_options(CLI::App& c, FitOptions& to)
+{
+    add_model(c, to.model);
+    value(c, "--data", "FILE", "CSV file with the column t [s] and columns of the outputs of a run",
+          assign(to.data, io::path))
+        ->required();
+    values(c, "--parameter", "/json/pointer[=START[:LOW:HIGH[:SCALE]]]",
+           "a number of the model that is fitted, with its start (default: that of the model), bounds and "
+           "typical change; repeatable",
+           append_one(to.parameters, unchanged));
+    values(c, "--column", "NAME[,NAME...]", "columns of the data; default: all", append(to.columns, list));
+    values(c, "--sigma", "S or COLUMN=S",
+           "standard deviation of the data, of all columns or of one; default: the same for all columns, and "
+           "estimated from the residuals",
+           append_one(to.sigma, unchanged));
+    value(c, "--integrator", "NAME", "integrator; default: " + to.integrator,
+          assign(to.integrator, integrator));
+    value(c, "--step", "H", "step size [s] of an integrator with fixed steps; default: 1e-3",
+          assign(to.step, positive_number));
+    add_settings(c, to.settings, to.given_settings);
+    add_set(c, "the model", to.set);
+    add_fix_initial(c, "", to.fix_initial);
+    value(c, "--fit-iterations", "N", "largest number of iterations of the fit (default 100)",
+          assign(to.max_fit_iterations, positive_count));
+    add_output(c, "--force", "out/fit-NAME", to.output);
+    c.add_flag("--force", to.force, "overwrite an output directory that is not empty");
+    value(c, "--jobs", "N", "number of concurrent runs; default: the number of cores",
+          assign(to.jobs, positive_count));
+    add_no_plot(c, "draw no figure", to.plot);
+    add_figure_format(c, to.figure_formats);
+    c.add_flag("--json", to.json, "print the result as JSON on stdout; write files only with --output");
+    c.add_flag("--quiet", to.quiet, "print no result, no warnings and no progress");
+}
+
 void restrict_help(CLI::App& command, const Study& to)
 {
     for (CLI::Option* option : command.get_options())

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The options of the commands study, reproduce, plot and view.
+/// The options of the commands study, fit, reproduce, plot and view.
 
 #pragma once
 
+#include "studies/fitting/fit_command.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/reproduce.hpp"
 #include "studies/running/frames/view.hpp"
@@ -19,6 +20,7 @@ void add_study_options(CLI::App& command, std::string& kind, StudyOptions& to);
 /// Removes the options that a study does not take, for its help, and adds its keys and files.
 void restrict_help(CLI::App& command, const Study& to);
 
+void add_fit_options(CLI::App& command, FitOptions& to);
 void add_reproduce_options(CLI::App& command, ReproduceOptions& to);
 void add_plot_options(CLI::App& command, std::string& directory, FigureOptions& figures);
 void add_view_options(CLI::App& command, ViewOptions& to);

@@ -34,7 +34,7 @@ struct Record {
 /// The record in a directory; nothing without a summary.json or study.json
 std::optional<Record> record_in(const fs::path& directory)
 {
-    for (const char* name : {"summary.json", "study.json"}) {
+    for (const char* name : {"summary.json", "study.json", "fit.json"}) {
         const std::string file = directory / name;
         std::error_code error;
         if (!fs::is_regular_file(file, error)) continue;

@@ -157,33 +157,44 @@ void OutputColumns::transfer(io::Archive& a)
         for (double& number : part.saved) a.value(number);
 }
 
-ObservedColumn::ObservedColumn(const dae::Model& model,
-                               const std::vector<std::unique_ptr<dae::Output>>& outputs,
-                               const std::string& option, const std::string& name)
+ObservedColumns::ObservedColumns(const dae::Model& model,
+                                 const std::vector<std::unique_ptr<dae::Output>>& outputs,
+                                 const std::string& option, const std::vector<std::string>& names)
 {
-    std::vector<std::unique_ptr<ColumnGroup>> groups;
+    std::vector<std::unique_ptr<ColumnGroup>> all;
     for (auto make : {body_columns, energy_column, constraint_norm_column, force_columns, contact_columns})
-        groups.push_back(make(model));
-    groups.push_back(std::make_unique<OutputColumns>(model, outputs));
-    std::vector<std::string> names;
-    for (std::unique_ptr<ColumnGroup>& candidate : groups)
-        for (size_t k = 0; k < candidate->columns.size(); ++k) {
-            names.push_back(candidate->columns[k].name);
-            if (names.back() != name) continue;
-            index = k;
-            value.resize(candidate->columns.size());
-            group = std::move(candidate);
-            return;
+        all.push_back(make(model));
+    all.push_back(std::make_unique<OutputColumns>(model, outputs));
+    std::vector<std::string> known;
+    std::vector<Place> known_places;  // in `all`
+    for (size_t g = 0; g < all.size(); ++g)
+        for (size_t k = 0; k < all[g]->columns.size(); ++k) {
+            known.push_back(all[g]->columns[k].name);
+            known_places.push_back({g, k});
         }
-    throw io::UsageError(option + ": the model has no column" + io::with_nearest(name, names) +
-                         " (hilda help outputs lists the columns)");
+    std::vector<size_t> number(all.size(), all.size());  // of each group in `groups`
+    for (const std::string& name : names) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found == known.end())
+            throw io::UsageError(option + ": the model has no column" + io::with_nearest(name, known) +
+                                 " (hilda help outputs lists the columns)");
+        const Place place = known_places[static_cast<size_t>(found - known.begin())];
+        if (number[place.group] == all.size()) {
+            number[place.group] = groups.size();
+            values.emplace_back(all[place.group]->columns.size());
+            groups.push_back(std::move(all[place.group]));
+        }
+        places.push_back({number[place.group], place.index});
+    }
 }
 
-double ObservedColumn::at(const lie::State& x)
+void ObservedColumns::at(const lie::State& x, double* out)
 {
-    group->node(x);
-    group->values(x, value.data());
-    return value[index];
+    for (size_t g = 0; g < groups.size(); ++g) {
+        groups[g]->node(x);
+        groups[g]->values(x, values[g].data());
+    }
+    for (const Place& place : places) *out++ = values[place.group][place.index];
 }
 
 }  // namespace hilda::studies

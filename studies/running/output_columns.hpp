@@ -41,21 +41,45 @@ private:
     size_t first_output = 0;       ///< index of the first variable of the outputs
 };
 
-/// One column of a run by its name: of bodies, energy, forces, contacts or outputs
-class ObservedColumn {
+/// Columns of a run by their names: of bodies, energy, forces, contacts or outputs
+class ObservedColumns {
 public:
     /// The model and the outputs must outlive this object. io::UsageError with `option` for an unknown name.
-    ObservedColumn(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
-                   const std::string& option, const std::string& name);
+    ObservedColumns(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
+                    const std::string& option, const std::vector<std::string>& names);
 
-    /// The value in the state x. To be called at each node of a run, in order.
-    double at(const lie::State& x);
-    const dae::Quantity& column() const { return group->columns[index]; }
+    /// Their values in the state x. To be called at each node of a run, in order.
+    void at(const lie::State& x, double* out);
+    const dae::Quantity& column(size_t k) const { return groups[places[k].group]->columns[places[k].index]; }
 
 private:
-    std::unique_ptr<ColumnGroup> group;
-    size_t index = 0;
-    std::vector<double> value;
+    struct Place {
+        size_t group, index;
+    };
+    std::vector<std::unique_ptr<ColumnGroup>> groups;  ///< those with an observed column
+    std::vector<std::vector<double>> values;           ///< of each group
+    std::vector<Place> places;                         ///< of the observed columns
+};
+
+/// One of them
+class ObservedColumn {
+public:
+    /// As for ObservedColumns
+    ObservedColumn(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
+                   const std::string& option, const std::string& name)
+        : columns(model, outputs, option, {name})
+    {}
+
+    double at(const lie::State& x)
+    {
+        double value = 0;
+        columns.at(x, &value);
+        return value;
+    }
+    const dae::Quantity& column() const { return columns.column(0); }
+
+private:
+    ObservedColumns columns;
 };
 
 }  // namespace hilda::studies

@@ -269,9 +269,10 @@ std::string script_for(const std::string& directory)
     for (const char* table : {"trajectory.csv", "run.h5"})
         if (fs::is_regular_file(fs::path(directory) / table, error)) return "trajectory.py";
     if (fs::is_regular_file(fs::path(directory) / "run.csv", error)) return "granular-run.py";
+    if (fs::is_regular_file(fs::path(directory) / "fit.csv", error)) return "fit.py";
     throw lie::InvalidInput(
         directory +
-        ": contains no study.csv, trajectory.csv, run.h5 or run.csv; hilda plot needs one of them");
+        ": contains no study.csv, trajectory.csv, run.h5, run.csv or fit.csv; hilda plot needs one of them");
 }
 
 std::string python_and_matplotlib()

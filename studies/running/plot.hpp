@@ -44,7 +44,8 @@ std::vector<std::string> existing_figures(const std::string& directory, const st
 void add_script_directory(const std::string& directory);
 
 /// The script for the results in a directory: trajectory.py for trajectory.csv, granular-run.py for run.csv,
-/// KIND.py for study.csv, where study.json states KIND. lie::InvalidInput if there is none of these files.
+/// fit.py for fit.csv, KIND.py for study.csv, where study.json states KIND. lie::InvalidInput if there is
+/// none of these files.
 std::string script_for(const std::string& directory);
 
 /// Versions of Python and matplotlib, or the missing component; for hilda info

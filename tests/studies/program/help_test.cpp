@@ -19,7 +19,7 @@ namespace {
 const std::vector<std::string> commands = {"run",      "cosim",       "kinematics", "inverse", "check",
                                            "models",   "integrators", "schema",     "study",   "collect",
                                            "granular", "plot",        "view",       "info",    "new",
-                                           "help",     "import",      "export",     "rerun"};
+                                           "help",     "import",      "export",     "rerun",   "fit"};
 
 /// All help texts, by the call that prints them
 std::vector<std::pair<std::string, std::string>> help_texts(const Scratch& in)

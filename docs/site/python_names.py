@@ -8,7 +8,8 @@ from pages import write
 
 GROUPS = (  # page, title, the modules whose names it has
     ("models", "Models and runs", ("hilda.model", "hilda.result")),
-    ("integrators", "Integrators", ("hilda.integrator", "hilda.orders", "hilda._hilda", "hilda.parameters", "hilda.fitting")),
+    ("integrators", "Integrators", ("hilda.integrator", "hilda._hilda")),
+    ("studies", "Studies", ("hilda.orders", "hilda.work", "hilda.parameters", "hilda.fitting")),
     ("errors", "Errors", ("hilda.errors",)),
 )
 INDEX = """# Python interface

@@ -8,13 +8,16 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "python/bindings/errors.hpp"
+#include "python/bindings/events.hpp"
 #include "python/bindings/integrator.hpp"
 #include "python/bindings/model.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
+#include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/output_columns.hpp"
 #include "studies/running/run_settings.hpp"
 #include "studies/running/watch/run_check.hpp"
 #include "studies/running/watch/watch.hpp"
@@ -36,6 +39,7 @@ struct Options {
     std::map<std::string, std::string>
         settings;  ///< values of studies::setting_options(), without the dashes
     bool reactions, force;
+    std::vector<std::string> columns;  ///< names of columns, or of the groups forces, contacts and outputs
     py::object observer;
 };
 
@@ -45,11 +49,13 @@ using Array = py::array_t<double>;
 /// start.
 class Rows final : public lie::Observer {
 public:
-    Rows(const dae::Model& model, const lie::TimeGrid& grid, bool with_reactions)
-        : model(model), grid(grid), bodies(static_cast<size_t>(model.bodies())),
+    Rows(const dae::Description& description, const lie::TimeGrid& grid, bool with_reactions,
+         const std::vector<std::string>& columns)
+        : model(*description.model), grid(grid), bodies(static_cast<size_t>(model.bodies())),
           multipliers(static_cast<size_t>(model.rows())), with_reactions(with_reactions), C(model.pattern()),
-          reactions(bodies)
+          reactions(bodies), columns(columns.size())
     {
+        if (!columns.empty()) observed.emplace(model, description.outputs, "run", columns);
         const auto n = grid.steps / grid.interval + 1 + (grid.steps % grid.interval != 0 ? 1 : 0);
         const auto b = static_cast<py::ssize_t>(bodies);
         t = make("t", {n});
@@ -58,12 +64,14 @@ public:
         A = make("A", {n, b, 3, 3});
         lambda = make("lambda_", {n, static_cast<py::ssize_t>(multipliers)});
         if (with_reactions) F = make("reaction_F", {n, b, 3}), T = make("reaction_T", {n, b, 3});
+        if (observed) values = make("columns", {n, static_cast<py::ssize_t>(columns.size())});
     }
 
     void accepted(const lie::State& x, long n, int /*iterations*/) override
     {
         const double residual = model.largest_residual(x).value;
         if (!(residual <= constraint_norm)) constraint_norm = residual;
+        if (observed && n > last_node) observed->node(x), last_node = n;
         if (grid.is_row(n) && n > last) write(x), last = n;
         dae::check_dropped_rows(model, x);
     }
@@ -93,6 +101,7 @@ private:
                 std::copy_n(reactions[b].T.data(), 3, T + 3 * (bodies * rows + b));
             }
         }
+        if (observed) observed->values(x, values + columns * rows);
         ++rows;
     }
 
@@ -120,9 +129,11 @@ private:
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
     py::dict all;
-    double *t, *energy, *A, *lambda, *F = nullptr, *T = nullptr;
+    const size_t columns;  ///< number of them
+    std::optional<studies::ObservedColumns> observed;
+    double *t, *energy, *A, *lambda, *F = nullptr, *T = nullptr, *values = nullptr;
     size_t rows = 0;
-    long last = -1;
+    long last = -1, last_node = -1;
 };
 
 /// Calls a Python function with each node. The run ends if it returns True.
@@ -155,7 +166,9 @@ private:
 /// What a run leaves besides its arrays
 struct Outcome {
     std::string status = "ok";
+    std::string stopped_by = {};  ///< name of the event that ended the run
     double t = 0;
+    double seconds = 0;  ///< CPU time of the steps [s]
     lie::Statistics statistics = {};
     py::object error = py::none();  ///< exception that ended the run
 };
@@ -176,16 +189,23 @@ lie::Statistics march(lie::March& march, const lie::Integrator& integrator, cons
     return statistics;
 }
 
-Outcome advance(lie::March& run, const lie::Integrator& integrator, const lie::TimeGrid& grid,
-                std::span<lie::Observer* const> observers, PythonObserver* observer, const dae::Model& model,
-                const lie::Scheme& scheme)
+Outcome advance(lie::March& run, const lie::Integrator& integrator, lie::TimeGrid& grid,
+                std::span<lie::Observer* const> observers, PythonObserver* observer, Rows& rows,
+                const dae::Model& model, const lie::Scheme& scheme)
 {
     Outcome out;
     Signals signals;
+    const double begin = studies::thread_seconds();
     try {
         out.statistics = march(run, integrator, grid, observers, observer, signals);
         if (observer != nullptr && observer->stopped) out.status = "stopped";
     } catch (const lie::Interrupted&) {
+    } catch (const studies::StoppedByEvent& stop) {  // the state at the event is the last row
+        out.status = "stopped";
+        out.stopped_by = stop.event;
+        grid.steps = run.number();
+        rows.accepted(stop.x, run.number(), 0);
+        out.t = stop.x.t;
     } catch (const io::NumericalFailure& failure) {
         // The start node of the failed step is the last valid node, and may be an output row.
         out.status = failure.status;
@@ -210,7 +230,8 @@ Outcome advance(lie::March& run, const lie::Integrator& integrator, const lie::T
         out.status = "interrupted";
         out.error = with_traceback(*signals.error());
     }
-    out.t = run.node().t;
+    if (out.stopped_by.empty()) out.t = run.node().t;
+    out.seconds = studies::thread_seconds() - begin;
     return out;
 }
 
@@ -240,6 +261,43 @@ lie::Settings settings_of(const lie::Scheme& scheme, const Options& options)
     return settings;
 }
 
+/// The names, with those of a group in place of its name
+std::vector<std::string> column_names(const dae::Description& of, const std::vector<std::string>& given)
+{
+    std::vector<std::string> all;
+    const auto add = [&](const studies::ColumnGroup& group) {
+        for (const dae::Quantity& column : group.columns) all.push_back(column.name);
+    };
+    for (const std::string& name : given)
+        if (name == "forces")
+            add(*studies::force_columns(*of.model));
+        else if (name == "contacts")
+            add(*studies::contact_columns(*of.model));
+        else if (name == "outputs")
+            add(studies::OutputColumns(*of.model, of.outputs));
+        else
+            all.push_back(name);
+    return all;
+}
+
+std::vector<std::string> event_names(const dae::Description& of)
+{
+    std::vector<std::string> all;
+    for (const dae::Event& event : of.events) all.push_back(event.value->name);
+    return all;
+}
+
+/// Why the run cannot have events; empty if it can
+std::string no_events(const Options& options, const lie::Scheme& scheme, const lie::Integrator& integrator)
+{
+    if (!py::isinstance<py::str>(options.integrator)) return "events need an integrator of the library";
+    if (!scheme.resumes)
+        return scheme.name + " stores past steps outside the state; events need another integrator";
+    if (dynamic_cast<const contact::UnilateralStep*>(&integrator) != nullptr)
+        return "a model with unilateral contacts as constraints has no events";
+    return {};
+}
+
 py::dict run(const ModelPointer& model, const Options& options)
 {
     const dae::Description& of = model->description;
@@ -250,12 +308,8 @@ py::dict run(const ModelPointer& model, const Options& options)
     if (!options.step) scheme = &scheme->with_adaptive_steps();
     const double end = options.end.value_or(of.end);
     const lie::Settings settings = settings_of(*scheme, options);
-    const lie::TimeGrid grid = studies::time_grid(*scheme, end, options.step, options.interval);
+    lie::TimeGrid grid = studies::time_grid(*scheme, end, options.step, options.interval);
     std::vector<std::string> warnings = of.warnings;
-    if (!of.events.empty())
-        throw io::UsageError(
-            "run: the model has events, which hilda run finds and Python does not; remove "
-            "\"events\", or use an observer");
     for (const std::string& row : model->start.dropped)
         warnings.push_back(row + ": redundant with the constraints before it, dropped from the equations");
     for (std::string& warning : contact::soft_friction_warnings(system, of.x))
@@ -271,21 +325,36 @@ py::dict run(const ModelPointer& model, const Options& options)
                   : contact::make_integrator(system, *scheme, settings);
     studies::Watch watch(system, of.x, *integrator, *scheme, grid, studies::Watch::Action::stop,
                          options.force);
-    Rows rows(system, grid, options.reactions);
+    Rows rows(of, grid, options.reactions, column_names(of, options.columns));
     std::vector<lie::Observer*> observers{&rows, &watch};
+    EventTables event_tables;
+    std::unique_ptr<studies::RunEvents> events;
+    if (!of.events.empty()) {
+        if (const std::string why = no_events(options, *scheme, *integrator); !why.empty())
+            throw io::UsageError("run: " + of.events.front().value->name_place + ": " + why);
+        events = std::make_unique<studies::RunEvents>(
+            of, [&] { return contact::make_integrator(system, *scheme, settings); }, event_tables);
+        observers.insert(observers.begin(), events.get());
+    }
     std::unique_ptr<PythonObserver> observer;
     if (!options.observer.is_none()) {
         observer = std::make_unique<PythonObserver>(options.observer);
         observers.push_back(observer.get());
     }
     lie::March march(of.x, *integrator, grid.h);
-    const Outcome out = advance(march, *integrator, grid, observers, observer.get(), system, *scheme);
+    const Outcome out = advance(march, *integrator, grid, observers, observer.get(), rows, system, *scheme);
+    if (events && !events->fault().empty()) warnings.push_back(events->fault());
 
     for (const studies::Finding& found : watch.findings()) warnings.push_back(found.text);
     if (std::string warning = studies::rank_warning(*integrator); !warning.empty())
         warnings.push_back(std::move(warning));
     py::dict result;
     result["arrays"] = rows.arrays();
+    result["columns"] = column_names(of, options.columns);
+    result["events"] = event_tables.arrays(static_cast<size_t>(system.bodies()));
+    result["event_names"] = event_names(of);
+    result["stopped_by"] = out.stopped_by.empty() ? py::object(py::none()) : py::cast(out.stopped_by);
+    result["seconds"] = out.seconds;
     result["rows"] = rows.number();
     result["status"] = out.status;
     result["error"] = out.error;
@@ -307,12 +376,13 @@ void define_run(py::module_& m)
         "_run",
         [](const ModelPointer& model, py::object integrator, std::optional<double> end,
            std::optional<double> step, std::optional<double> interval,
-           std::map<std::string, std::string> settings, bool reactions, bool force, py::object observer) {
+           std::map<std::string, std::string> settings, bool reactions, bool force,
+           std::vector<std::string> columns, py::object observer) {
             return run(model, {std::move(integrator), end, step, interval, std::move(settings), reactions,
-                               force, std::move(observer)});
+                               force, std::move(columns), std::move(observer)});
         },
         py::arg("model"), py::arg("integrator"), py::arg("end"), py::arg("step"), py::arg("interval"),
-        py::arg("settings"), py::arg("reactions"), py::arg("force"), py::arg("observer"));
+        py::arg("settings"), py::arg("reactions"), py::arg("force"), py::arg("columns"), py::arg("observer"));
 }
 
 }  // namespace hilda::python

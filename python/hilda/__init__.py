@@ -14,8 +14,10 @@ from .integrator import Integrator
 from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
 from .parameters import Sweep, sweep
-from .result import BodyResult, Result
+from .result import BodyResult, Events, Result
+from .work import WorkPrecision, work_precision
 
-__all__ = ["BodyResult", "Convergence", "Error", "FileError", "Fit", "Integrator", "InvalidInput", "Model", "NotAvailable",
-           "NumericalFailure", "Result", "Saddle", "State", "Sweep", "System", "UsageError", "__version__", "convergence",
-           "errors", "fit", "integrators", "problems", "run", "so3", "sweep"]
+__all__ = ["BodyResult", "Convergence", "Error", "Events", "FileError", "Fit", "Integrator", "InvalidInput", "Model",
+           "NotAvailable", "NumericalFailure", "Result", "Saddle", "State", "Sweep", "System", "UsageError",
+           "WorkPrecision", "__version__", "convergence", "errors", "fit", "integrators", "problems", "run", "so3",
+           "sweep", "work_precision"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, Iterable, Mapping
 
 from . import _hilda
 from ._hilda import State
@@ -160,7 +160,7 @@ class Model:
             step: float | None = None, interval: float | None = None, rtol: float | None = None,
             atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
             linear_solver: str | None = None, rho_infinity: float | None = None, reactions: bool = False,
-            observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
+            columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
         """Integrates the model and returns a Result.
 
         Args:
@@ -174,9 +174,13 @@ class Model:
             linear_solver: "auto", the default, "klu" or "condensed".
             rho_infinity: numerical damping from 0 to 1, default 0.8, of integrators that have it.
             reactions: store the constraint forces and torques on each body.
+            columns: names of further columns (hilda help outputs), such as "spring.force"; "forces", "contacts" and
+                "outputs" stand for all columns of these groups.
             observer: function of the State of each node (each row, with adaptive steps). The run ends if it
                 returns True.
             force: accept a step above the stability limit of a force.
+
+        The events of the model are found, see Result.events. One with the action stop ends the run.
 
         Other threads run meanwhile. Ctrl-C ends the run: the KeyboardInterrupt has the rows up to then as
         attribute `result`.
@@ -197,7 +201,7 @@ class Model:
                     "rho-infinity": rho_infinity, "rtol": rtol, "atol": atol}
         outcome = _hilda._run(core, used, end, step, interval,
                               {name: str(value) for name, value in settings.items() if value is not None},
-                              reactions, force, observer)
+                              reactions, force, [columns] if isinstance(columns, str) else list(columns), observer)
         error = outcome.pop("error")
         result = Result(core, outcome)
         if error is None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from numpy import float64
+import numpy as np
+from numpy import bool_, float64
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
@@ -40,12 +41,16 @@ class Result(Motions):
         energy: kinetic and potential energy [J]; shape (n,).
         reaction_F, reaction_T: with reactions=True, constraint forces [N, global frame] and torques
             [N m, body frame] on each body; shape (n, bodies, 3). Otherwise None.
+        columns: the further columns of the run by their names; shape (n,).
+        events: what was found of the events of the model.
         bodies: names of the bodies.
         model, integrator: their names.
         step: step [s], None with adaptive steps.
-        status: "ok", "stopped" (by the observer), "interrupted", "error" or that of a NumericalFailure.
+        status: "ok", "stopped" (by the observer or an event), "interrupted", "error" or that of a NumericalFailure.
+        stopped_by: name of the event that ended the run, or None.
         t_end: time reached [s].
         statistics: numbers of steps, iterations and factorisations.
+        seconds: CPU time of the steps, with their observers [s].
         constraint_norm: largest scaled residual of the constraints in all nodes [m or rad].
         warnings: warnings of the model and of the run.
     """
@@ -56,6 +61,10 @@ class Result(Motions):
     step: float | None
     status: str
     t_end: float
+    stopped_by: str | None
+    seconds: float
+    columns: dict[str, NDArray[float64]]
+    events: Events
     statistics: dict[str, int]
     constraint_norm: float
     warnings: list[str]
@@ -63,11 +72,15 @@ class Result(Motions):
     def __init__(self, core: _hilda._Model, outcome: dict[str, Any]) -> None:
         rows = outcome["rows"]
         self.reaction_F = self.reaction_T = None
-        for name, array in outcome["arrays"].items():
+        arrays = outcome["arrays"]
+        values = arrays.pop("columns", None)
+        self.columns = {name: values[:rows, k] for k, name in enumerate(outcome["columns"])}
+        for name, array in arrays.items():
             setattr(self, name, array[:rows])
+        self.events = Events(outcome["events"], outcome["event_names"])
         self.bodies = core.bodies
         self.model = core.name
-        for name in ("integrator", "step", "status", "t_end", "statistics", "constraint_norm", "warnings"):
+        for name in ("integrator", "step", "status", "stopped_by", "t_end", "seconds", "statistics", "constraint_norm", "warnings"):
             setattr(self, name, outcome[name])
 
     def __len__(self) -> int:
@@ -103,6 +116,33 @@ class Result(Motions):
     def __repr__(self) -> str:
         return (f"<hilda.Result {self.model}, {self.integrator}: {len(self)} rows up to {self.t_end:g} s, "
                 f"status {self.status}>")
+
+
+class Events(Motions):
+    """The events that were found, in the order of time. The arrays are those of a Result, with the event as first index.
+
+    Attributes:
+        names: name of each event.
+        rises: whether its function rises; shape (n,).
+    """
+
+    names: list[str]
+    rises: NDArray[bool_]
+
+    def __init__(self, arrays: dict[str, Any], names: list[str]) -> None:
+        self.names = [names[int(k)] for k in arrays.pop("event")]
+        self.rises = arrays.pop("direction") > 0
+        self.reaction_F = self.reaction_T = None
+        for name, array in arrays.items():
+            setattr(self, name, array)
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def at(self, name: str) -> NDArray[float64]:
+        """The times of an event [s]."""
+        times: NDArray[float64] = self.t[np.array([n == name for n in self.names], dtype=bool)]
+        return times
 
 
 class BodyResult(Motions):

@@ -181,20 +181,22 @@ ObservedColumns::ObservedColumns(const dae::Model& model,
         const Place place = known_places[static_cast<size_t>(found - known.begin())];
         if (number[place.group] == all.size()) {
             number[place.group] = groups.size();
-            values.emplace_back(all[place.group]->columns.size());
+            numbers.emplace_back(all[place.group]->columns.size());
             groups.push_back(std::move(all[place.group]));
         }
         places.push_back({number[place.group], place.index});
     }
 }
 
-void ObservedColumns::at(const lie::State& x, double* out)
+void ObservedColumns::node(const lie::State& x)
 {
-    for (size_t g = 0; g < groups.size(); ++g) {
-        groups[g]->node(x);
-        groups[g]->values(x, values[g].data());
-    }
-    for (const Place& place : places) *out++ = values[place.group][place.index];
+    for (const auto& group : groups) group->node(x);
+}
+
+void ObservedColumns::values(const lie::State& x, double* out)
+{
+    for (size_t g = 0; g < groups.size(); ++g) groups[g]->values(x, numbers[g].data());
+    for (const Place& place : places) *out++ = numbers[place.group][place.index];
 }
 
 }  // namespace hilda::studies

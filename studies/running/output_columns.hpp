@@ -48,8 +48,10 @@ public:
     ObservedColumns(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
                     const std::string& option, const std::vector<std::string>& names);
 
-    /// Their values in the state x. To be called at each node of a run, in order.
-    void at(const lie::State& x, double* out);
+    /// To be called at each node of a run, in order and before values().
+    void node(const lie::State& x);
+    /// Their values in the state x
+    void values(const lie::State& x, double* out);
     const dae::Quantity& column(size_t k) const { return groups[places[k].group]->columns[places[k].index]; }
 
 private:
@@ -57,7 +59,7 @@ private:
         size_t group, index;
     };
     std::vector<std::unique_ptr<ColumnGroup>> groups;  ///< those with an observed column
-    std::vector<std::vector<double>> values;           ///< of each group
+    std::vector<std::vector<double>> numbers;          ///< of each group
     std::vector<Place> places;                         ///< of the observed columns
 };
 
@@ -70,10 +72,12 @@ public:
         : columns(model, outputs, option, {name})
     {}
 
+    /// The value in the state x. To be called at each node of a run, in order.
     double at(const lie::State& x)
     {
         double value = 0;
-        columns.at(x, &value);
+        columns.node(x);
+        columns.values(x, &value);
         return value;
     }
     const dae::Quantity& column() const { return columns.column(0); }

@@ -89,12 +89,59 @@ print(len(r.t), (peak() - before) / sum(a.nbytes for a in arrays))
         with self.assertRaisesRegex(KeyError, "no body 'rod2'; the bodies are "):
             result["rod2"]
 
+    def test_events(self):
+        ball = {"hilda_model": 1, "name": "ball", "gravity": [0, 0, -10], "end": 2, "bodies": [
+            {"name": "ball", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0], "r_dot": [1, 0, 8], "omega": [0, 0, 3]}],
+            "events": [{"name": "top", "value": "ball.vz"}, {"name": "level", "value": "ball.rz - 2.4"},
+                       {"name": "ground", "value": "ball.rz + 2.25", "direction": "falling", "action": "stop"}]}
+        for integrator, keys, most in (("rA-rkmk-4", {"step": 0.03}, 1e-9), ("rA-dop853", {}, 1e-9), ("rA-half-1-momentum", {"step": 0.01}, 1e-9)):
+            result = hilda.run(ball, integrator, **keys)
+            events = result.events
+            with self.subTest(integrator):
+                self.assertEqual(events.names, ["level", "top", "level", "ground"])
+                np.testing.assert_array_equal(events.rises, [True, False, False, False])
+                end = 0.8 + np.sqrt(0.64 + 0.45)
+                np.testing.assert_allclose(events.t, [0.4, 0.8, 1.2, end], rtol=0, atol=most)
+                np.testing.assert_allclose(events.r[:, 0, 0], events.t, rtol=0, atol=most)
+                np.testing.assert_allclose(events.rdot[:, 0, 2], 8 - 10 * events.t, rtol=0, atol=10 * most)
+                np.testing.assert_allclose(events.A[:, 0, 0, 0], np.cos(3 * events.t), rtol=0, atol=1e-5)
+                np.testing.assert_array_equal(events.at("level"), events.t[[0, 2]])
+                self.assertEqual((result.status, result.stopped_by), ("stopped", "ground"))
+                self.assertEqual(result.t[-1], events.t[-1])
+                self.assertEqual(result.t_end, events.t[-1])
+                np.testing.assert_array_equal(result.r[-1], events.r[-1])
+                self.assertTrue((np.diff(result.t) > 0).all())
+        with self.assertRaisesRegex(hilda.UsageError, "stores past steps"):
+            hilda.run(ball, "ida-rp")
+        never = hilda.run({**ball, "events": [{"name": "e", "value": "log(-1 - ball.rx)"}]}, end=0.1)
+        self.assertEqual((len(never.events), never.stopped_by), (0, None))
+        self.assertIn("is not finite at any node", never.warnings[-1])
+        with self.assertRaisesRegex(hilda.InvalidInput, "did you mean|unknown"):
+            hilda.run({**ball, "events": [{"name": "e", "value": "ball.rq"}]})
 
-    def test_events_are_refused(self):
-        model = hilda.Model({**hilda.Model("double_pendulum").to_dict(),
-                             "events": [{"name": "down", "value": "bar_1.rz", "action": "stop"}]})
-        with self.assertRaisesRegex(hilda.UsageError, "the model has events"):
-            model.run()
+    def test_columns(self):
+        model = hilda.Model("braked_ball_in_bowl")
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([PROGRAM, "run", "braked_ball_in_bowl", "--end", "0.2", "--contacts", "--quiet", "--output", folder + "/a"],
+                           check=True, capture_output=True)
+            with open(folder + "/a/contacts.csv", encoding="utf-8") as file:
+                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        result = model.run(end=0.2, columns="contacts")
+        self.assertEqual(list(result.columns), [name for name in rows[0] if name != "t"])
+        for name, values in result.columns.items():
+            np.testing.assert_array_equal(values, [float(row[name]) for row in rows])
+        wheel = {"hilda_model": 1, "name": "wheel", "bodies": [
+            {"name": "wheel", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0], "omega": [0, 20, 0]}],
+            "constraints": [{"type": "revolute", "name": "axle", "body_i": "ground", "body_j": "wheel", "axis_bar_i": [0, 1, 0],
+                             "axis_bar_j": [0, 1, 0]}],
+            "outputs": [{"type": "expression", "name": "twice", "value": "2*wheel.wy"}]}
+        result = hilda.run(wheel, end=1, interval=0.25, columns=["outputs", "energy"])
+        self.assertEqual(list(result.columns), ["twice", "energy"])
+        np.testing.assert_allclose(result.columns["twice"], 40)
+        np.testing.assert_array_equal(result.columns["energy"], result.energy)
+        self.assertGreater(result.seconds, 0)
+        with self.assertRaisesRegex(hilda.UsageError, "no column 'twic'; did you mean 'twice'"):
+            hilda.run(wheel, columns=["twic"])
 
     def test_an_end_between_two_steps_is_a_warning(self):
         result = hilda.run("double_pendulum", end=0.0105, interval=0.0015)

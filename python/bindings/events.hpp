@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The events of a run, in memory.
+
+#pragma once
+
+#include "studies/running/events/run_events.hpp"
+
+#include <pybind11/pybind11.h>
+
+namespace hilda::python {
+
+/// The rows of the table of events, which RunEvents writes
+class EventTables final : public studies::RunTables {
+public:
+    std::unique_ptr<studies::RunTable> table(const std::string& name,
+                                             std::vector<studies::TableColumn> columns) override;
+
+    /// Arrays event, rises, t, r, A, rdot, omega_bar, rddot and omegadot_bar with the event as first index
+    pybind11::dict arrays(size_t bodies) const;
+
+private:
+    size_t columns = 1;
+    std::vector<double> values;  ///< row by row
+};
+
+}  // namespace hilda::python

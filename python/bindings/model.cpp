@@ -4,11 +4,14 @@
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "lie/schemes.hpp"
+#include "python/bindings/constraint.hpp"
 #include "python/bindings/force.hpp"
 #include "python/bindings/state.hpp"
+#include "python/bindings/surface.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/running/named_model.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 namespace hilda::python {
@@ -18,12 +21,56 @@ namespace {
 using Names = std::vector<std::string>;
 /// Name, function, potential energy or None
 using Forces = std::vector<std::tuple<std::string, py::object, py::object>>;
+/// Name, bodies i and j, number of rows, phi, variation, nu, gamma
+using Constraints = std::vector<
+    std::tuple<std::string, std::string, std::string, int, py::object, py::object, py::object, py::object>>;
 
-ModelPointer started(dae::Description description, const Forces& forces, bool fix_initial)
+/// What a model has besides its text
+struct Parts {
+    Forces forces;
+    Constraints constraints;
+    std::vector<py::object> surfaces;
+};
+
+int number_of(const dae::Model& of, const std::string& constraint, const std::string& body)
+{
+    try {
+        return of.find(body);
+    } catch (const lie::InvalidInput& error) {
+        throw lie::InvalidInput("constraint '" + constraint + "': " + error.what());
+    }
+}
+
+void add_constraints(ModelObject& model, const Constraints& constraints)
+{
+    dae::Description& of = model.description;
+    for (const auto& [name, i, j, rows, phi, variation, nu, gamma] : constraints) {
+        const std::string label = "constraint '" + name + "'";
+        if (rows < 1 || rows > dae::Constraint::max_position_rows)
+            throw lie::InvalidInput(fmt::format("{}: rows must be from 1 to {}, got {}", label,
+                                                dae::Constraint::max_position_rows, rows));
+        if (i == j) throw lie::InvalidInput(label + ": the bodies must be different, got '" + i + "' twice");
+        auto constraint =
+            std::make_unique<PythonConstraint>(number_of(*of.model, name, i), number_of(*of.model, name, j),
+                                               rows, PythonConstraint::Functions{phi, variation, nu, gamma});
+        model.functions.push_back(constraint.get());
+        of.model->constrain(name, std::move(constraint));
+    }
+}
+
+/// `read` reads the model.
+template <class Read>
+ModelPointer started(const Read& read, const Parts& parts, bool fix_initial)
 {
     auto model = std::make_shared<ModelObject>();
-    model->description = std::move(description);
+    {
+        const SurfacesOfModel surfaces(parts.surfaces);
+        model->description = read();
+        for (const auto& surface : surfaces.made) model->functions.push_back(surface.get());
+    }
     dae::Model& of = *model->description.model;
+    add_constraints(*model, parts.constraints);
+    const Forces& forces = parts.forces;
     for (const auto& [name, function, potential] : forces) {
         auto force = std::make_unique<PythonForce>(name, function, potential, of.bodies());
         model->functions.push_back(force.get());
@@ -40,12 +87,12 @@ void collect_functions(PyHeapTypeObject* heap_type)
     type.tp_flags |= Py_TPFLAGS_HAVE_GC;
     type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
         Py_VISIT(Py_TYPE(self));
-        for (const PythonForce* force : py::cast<ModelObject&>(py::handle(self)).functions)
+        for (const ModelFunctions* force : py::cast<ModelObject&>(py::handle(self)).functions)
             if (const int result = force->visit(visit, arg); result != 0) return result;
         return 0;
     };
     type.tp_clear = [](PyObject* self) {
-        for (PythonForce* force : py::cast<ModelObject&>(py::handle(self)).functions) force->clear();
+        for (ModelFunctions* force : py::cast<ModelObject&>(py::handle(self)).functions) force->clear();
         return 0;
     };
 }
@@ -100,18 +147,22 @@ void define_model(py::module_& m)
         });
     m.def(
         "_read_named",
-        [](const std::string& name, const Names& set, const Forces& forces, bool fix_initial) {
-            return started(studies::named_model(name, set, ""), forces, fix_initial);
+        [](const std::string& name, const Names& set, const Forces& forces, const Constraints& constraints,
+           bool fix_initial) {
+            return started([&] { return studies::named_model(name, set, ""); }, {forces, constraints, {}},
+                           fix_initial);
         },
-        py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("fix_initial"));
+        py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("constraints"), py::arg("fix_initial"));
     m.def(
         "_read_text",
         [](const std::string& text, const std::string& file, const Names& set, const std::string& folder,
-           const Forces& forces, bool fix_initial) {
-            return started(dae::read_model(text, file, set, "", folder), forces, fix_initial);
+           const Forces& forces, const Constraints& constraints, const std::vector<py::object>& surfaces,
+           bool fix_initial) {
+            return started([&] { return dae::read_model(text, file, set, "", folder); },
+                           {forces, constraints, surfaces}, fix_initial);
         },
         py::arg("text"), py::arg("file"), py::arg("set"), py::arg("folder"), py::arg("forces"),
-        py::arg("fix_initial"));
+        py::arg("constraints"), py::arg("surfaces"), py::arg("fix_initial"));
     m.def("_integrators", [] {
         py::list all;
         for (const lie::Scheme& scheme : lie::schemes()) all.append(properties(scheme));

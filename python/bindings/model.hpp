@@ -14,14 +14,14 @@ namespace hilda::python {
 
 namespace py = pybind11;
 
-class PythonForce;
+class ModelFunctions;
 
 /// A model that has been read and has a consistent start. It is constant from then on, so that several
 /// threads may use it at the same time.
 struct ModelObject {
     dae::Description description;
     dae::StartReport start;
-    std::vector<PythonForce*> functions;  ///< the forces of the model that are functions
+    std::vector<ModelFunctions*> functions;  ///< of the parts of the model that are written in Python
 };
 using ModelPointer = std::shared_ptr<ModelObject>;
 

@@ -15,9 +15,10 @@ from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
 from .parameters import Sweep, sweep
 from .result import BodyResult, Events, Result
+from .surface import Surface
 from .work import WorkPrecision, work_precision
 
 __all__ = ["BodyResult", "Convergence", "Error", "Events", "FileError", "Fit", "Integrator", "InvalidInput", "Model",
-           "NotAvailable", "NumericalFailure", "Result", "Saddle", "State", "Sweep", "System", "UsageError",
+           "NotAvailable", "NumericalFailure", "Result", "Saddle", "State", "Surface", "Sweep", "System", "UsageError",
            "WorkPrecision", "__version__", "convergence", "errors", "fit", "integrators", "problems", "run", "so3",
            "sweep", "work_precision"]

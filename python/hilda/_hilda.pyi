@@ -5,6 +5,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from .integrator import Integrator
+from .surface import Surface
 
 class State:
     """The state of a mechanical system."""
@@ -67,10 +68,15 @@ class _Model:
     def report(self) -> dict[str, Any]: ...
     def state(self) -> State: ...
 
-_Forces = list[tuple[str, Callable[[State], Any], Callable[[State], float] | None]]
+_Function = Callable[[State], Any]
+_Forces = list[tuple[str, _Function, Callable[[State], float] | None]]
+_Constraints = list[tuple[str, str, str, int, _Function, _Function | None, _Function | None, _Function | None]]
 
-def _read_named(name: str, set: list[str], forces: _Forces, fix_initial: bool) -> _Model: ...
-def _read_text(text: str, file: str, set: list[str], folder: str, forces: _Forces, fix_initial: bool) -> _Model: ...
+def _read_named(name: str, set: list[str], forces: _Forces, constraints: _Constraints, fix_initial: bool) -> _Model: ...
+def _read_text(
+    text: str, file: str, set: list[str], folder: str, forces: _Forces, constraints: _Constraints, surfaces: list[Surface],
+    fix_initial: bool,
+) -> _Model: ...
 def _run(
     model: _Model, integrator: str | Integrator, end: float | None, step: float | None, interval: float | None,
     settings: dict[str, str], reactions: bool, force: bool, columns: list[str], observer: Callable[[State], Any] | None,

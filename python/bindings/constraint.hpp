@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Constraints that are functions in Python.
+
+#pragma once
+
+#include "dae/constraint.hpp"
+#include "python/bindings/model_function.hpp"
+#include "python/bindings/state.hpp"
+
+namespace hilda::python {
+
+/// Position rows Φ(r, A, t) = 0 of two bodies, computed by Python functions of a state with the two bodies.
+///
+/// phi returns Φ, shape (rows,). The other functions may be None:
+///
+///     variation   (C_i, C_j), shapes (rows, 6): ∂Φ/∂(r, θ) of body i and of body j, with δA = A δθ~
+///     nu          -∂Φ/∂t, shape (rows,)
+///     gamma       γ = C v̇ of Φ̈ = 0, shape (rows,)
+///
+/// They are then central differences: of Φ by poses and time with an error of about 1e-10, and γ = -d²Φ/ds²
+/// along the motion with the present velocities, of fourth order, with an error of about 1e-9; with
+/// `variation`, γ is the first derivative of C v - ν.
+class PythonConstraint final : public dae::Constraint, public ModelFunctions {
+public:
+    struct Functions {
+        py::object phi, variation, nu, gamma;
+    };
+    PythonConstraint(int i, int j, int rows, Functions functions);
+
+    int position_rows() const override { return rows; }
+    void phi(const Arguments& x, double* out) const override;
+    void variation(const Arguments& x, Derivatives& out) const override;
+    void nu(const Arguments& x, double* out) const override;
+    void gamma(const Arguments& x, double* out) const override;
+
+private:
+    enum Which { phi_, variation_, nu_, gamma_ };
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_position_rows, 1>;
+    struct Place;
+
+    bool has(Which which) const { return !is_none[which]; }
+    void call(Which which, const char* what, const Arguments& x, double* out) const;
+    Rows phi_at(const Arguments& x, double s) const;
+    Rows rate_at(const Arguments& x, double s) const;
+
+    const int rows;
+    bool is_none[4];
+    mutable StatePool pool;
+};
+
+}  // namespace hilda::python

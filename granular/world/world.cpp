@@ -160,22 +160,51 @@ int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
     return number;
 }
 
-void World::set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega)
+namespace {
+
+/// Whether the components are finite in single precision
+bool is_single(const Vec3& v)
 {
-    if (is_removed(id)) refuse("velocity", "no particle has this id", id);
-    if (!finite(v) || !finite(omega))
-        refuse("velocity of " + name_of(id), "must be finite", not_finite({v, omega}));
+    constexpr double most = std::numeric_limits<float>::max();
+    return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
+}
+
+/// Throws io::InvalidInput with the first component that is not.
+[[noreturn]] void refuse_numbers(const std::string& where, std::initializer_list<Vec3> all)
+{
+    if (const double x = not_finite(all); x != 0) refuse(where, "must be finite", x);
+    double largest = 0;
+    for (const Vec3& v : all)
+        for (const double x : {v.x, v.y, v.z})
+            if (std::abs(x) > std::abs(largest)) largest = x;
+    refuse(where, "must be in the range of single precision, up to 3.4e38", largest);
+}
+
+}  // namespace
+
+void World::set_velocities(const std::vector<std::uint32_t>& ids, const std::vector<Vec3>& v,
+                           const std::vector<Vec3>& omega)
+{
+    const auto omega_of = [&](std::size_t n) { return omega.empty() ? Vec3{0, 0, 0} : omega[n]; };
+    places_of(ids, "velocity");
+    for (std::size_t n = 0; n < ids.size(); ++n)
+        if (!is_single(v[n]) || !is_single(omega_of(n)))
+            refuse_numbers("velocity of " + name_of(ids[n]), {v[n], omega_of(n)});
     insert_pending();
-    if (clump_of(id) != no_clump)
-        refuse("velocity of " + name_of(id), "must not be set, because it belongs to a clump; particle", id);
+    const std::vector<std::uint32_t> places = places_of(ids, "velocity");
+    for (const std::uint32_t id : ids)
+        if (clump_of(id) != no_clump)
+            refuse("velocity of " + name_of(id), "must not be set, because it belongs to a clump; particle",
+                   id);
     Particles<par::Cpu>& p = engine->arrays().particle;
-    for (std::uint32_t k = 0; k < p.count; ++k)
-        if (p.id.data()[k] == id) {
-            p.velocity.data()[k] = to_float4(v, p.velocity.data()[k].w);
-            store_bfloat16(p.compensation.data()[k].v, rounding_error(v), dither_to_nearest);
-            store_bfloat16(p.compensation.data()[k].omega, rounding_error(omega), dither_to_nearest);
-            p.omega.data()[k] = to_float4(omega, p.omega.data()[k].w);
-        }
+    for (std::size_t n = 0; n < ids.size(); ++n) {
+        const std::uint32_t k = places[n];
+        p.velocity.data()[k] = to_float4(v[n], p.velocity.data()[k].w);
+        store_bfloat16(p.compensation.data()[k].v, rounding_error(v[n]), dither_to_nearest);
+        if (omega.empty()) continue;
+        store_bfloat16(p.compensation.data()[k].omega, rounding_error(omega[n]), dither_to_nearest);
+        p.omega.data()[k] = to_float4(omega[n], p.omega.data()[k].w);
+    }
     start_balance();
     engine->arrays_modified();
 }
@@ -201,12 +230,15 @@ void World::stop(std::uint16_t replica)
     engine->arrays_modified();
 }
 
-void World::set_force(std::uint32_t id, const Vec3& F)
+void World::set_forces(const std::vector<std::uint32_t>& ids, const std::vector<Vec3>& F)
 {
-    if (is_removed(id)) refuse("force", "no particle has this id", id);
-    if (!finite(F)) refuse("force on " + name_of(id), "must be finite", F.norm());
+    if (next_id != inserted_count) places_of(ids, "force");  // some are removed
+    for (const std::uint32_t id : ids)
+        if (id >= next_id + pending.size()) refuse("force", "no particle has this id", id);
+    for (std::size_t n = 0; n < ids.size(); ++n)
+        if (!is_single(F[n])) refuse_numbers("force on " + name_of(ids[n]), {F[n]});
     forces.resize(next_id + pending.size());
-    forces[id] = to_float4(F, 0);
+    for (std::size_t n = 0; n < ids.size(); ++n) forces[ids[n]] = to_float4(F[n], 0);
     forces_changed = true;
 }
 

@@ -17,7 +17,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -199,7 +199,9 @@ public:
     /// insertion checks its position and its overlaps, which may be at most 5 % of the smaller radius. If
     /// it is inserted during a run, schemes that use the previous acceleration start it with that of
     /// gravity.
-    std::uint32_t add(const Particle& particle);
+    std::uint32_t add(const Particle& particle) { return add(std::span(&particle, 1)); }
+    /// The same for several particles, all or none, with consecutive ids
+    std::uint32_t add(std::span<const Particle> particles);
     /// Adds a template of clumps and returns its number. Throws io::InvalidInput.
     int add_template(const ClumpTemplate& shape);
     /// Adds the particles of a clump, with consecutive ids, and returns the first one. They are pending like
@@ -295,12 +297,17 @@ public:
     const Vec3& low() const { return options.low; }
     const Vec3& high() const { return options.high; }
     const std::array<bool, 3>& periodic() const { return options.periodic; }
-    /// Sets the applied force on a particle, in the global frame [N]. It stays constant until the next call.
-    /// Throws io::InvalidInput.
-    void set_force(std::uint32_t id, const Vec3& F);
-    /// Sets the velocities of a particle that is in no clump, in the global frame [m/s, rad/s]. Throws
-    /// io::InvalidInput.
-    void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& omega);
+    /// Places of particles in the arrays; those of pending ones are not defined. Throws io::InvalidInput.
+    std::vector<std::uint32_t> places_of(const std::vector<std::uint32_t>& ids, const char* where) const;
+    /// Sets the applied forces on particles, in the global frame [N]. They stay constant until the next call.
+    /// Throws io::InvalidInput before any is set.
+    void set_forces(const std::vector<std::uint32_t>& ids, const std::vector<Vec3>& F);
+    void set_force(std::uint32_t id, const Vec3& F) { set_forces({id}, {F}); }
+    /// Sets the velocities of particles that are in no clump, in the global frame [m/s, rad/s]; an empty list
+    /// of omega leaves the angular velocities. Throws io::InvalidInput before any is set.
+    void set_velocities(const std::vector<std::uint32_t>& ids, const std::vector<Vec3>& v,
+                        const std::vector<Vec3>& omega);
+    void set_velocity(std::uint32_t id, const Vec3& v, const Vec3& w) { set_velocities({id}, {v}, {w}); }
     /// Sets the velocities of all particles of a replica to zero.
     void stop(std::uint16_t replica);
     /// If true, torques do not accelerate the rotation of particles.
@@ -337,12 +344,7 @@ public:
     };
     Sums sums() const;
     double kinetic_energy() const { return sums().kinetic_energy; }
-    /// Volume of the domain [m³]
-    double volume() const
-    {
-        const Vec3 size = options.high - options.low;
-        return size.x * size.y * size.z;
-    }
+    double volume() const;  ///< of the domain [m³]
     Vec3 momentum() const { return sums().momentum; }
     /// The particles that were removed since the last call of clear_removed(), ordered by time, then by id
     const std::vector<RemovedParticle>& removed() const { return removed_particles; }
@@ -412,7 +414,6 @@ public:
 
 private:
     static constexpr std::uint8_t no_law = 255;
-
     struct PlaceAtBuild;
     void transfer(io::Archive& a);
     void transfer_particles(io::Archive& a);
@@ -472,7 +473,6 @@ private:
     void transfer_clumps(io::Archive& a);
     void check_clumps() const;
     [[noreturn]] void throw_turns_too_far() const;
-    bool is_removed(std::uint32_t id) const;
     void attach(const Particle& p);
     int boundary_of(std::uint32_t id) const;
     void rotate_frames();

@@ -48,12 +48,21 @@ Particle World::checked(const Particle& p, const std::string& where) const
     return valid;
 }
 
-std::uint32_t World::add(const Particle& p)
+std::uint32_t World::add(std::span<const Particle> particles)
 {
-    const auto id = static_cast<std::uint32_t>(next_id + pending.size());
-    pending.push_back(checked(p, name_of(id)));
-    pending.back().id = id;
-    return id;
+    const auto first = static_cast<std::uint32_t>(next_id + pending.size());
+    const std::size_t before = pending.size();
+    try {
+        for (const Particle& p : particles) {
+            const auto id = static_cast<std::uint32_t>(next_id + pending.size());
+            pending.push_back(checked(p, name_of(id)));
+            pending.back().id = id;
+        }
+    } catch (...) {
+        pending.resize(before);
+        throw;
+    }
+    return first;
 }
 
 void World::expect(const std::vector<Particle>& samples, std::size_t particles)

@@ -9,12 +9,21 @@ namespace hilda::granular {
 
 using namespace detail;
 
-bool World::is_removed(std::uint32_t id) const
+/// Places of the particles with these ids in the arrays; that of a pending particle is not defined. Throws
+/// io::InvalidInput for an id that no particle has.
+std::vector<std::uint32_t> World::places_of(const std::vector<std::uint32_t>& ids, const char* where) const
 {
-    if (id >= next_id) return id >= next_id + pending.size();
-    if (next_id == inserted_count) return false;
-    const std::uint32_t* ids = engine->arrays().particle.id.data();
-    return std::find(ids, ids + inserted_count, id) == ids + inserted_count;
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::vector<std::uint32_t> place_of(next_id, none), places;
+    const std::uint32_t* const id = engine->arrays().particle.id.data();
+    for (std::uint32_t k = 0; k < inserted_count; ++k) place_of[id[k]] = k;
+    places.reserve(ids.size());
+    for (const std::uint32_t i : ids) {
+        places.push_back(i < next_id ? place_of[i] : none);
+        if (i >= next_id + pending.size() || (i < next_id && places.back() == none))
+            refuse(where, "no particle has this id", i);
+    }
+    return places;
 }
 
 /// Throws ParticleLost for a particle that has left the domain.

@@ -77,6 +77,12 @@ std::vector<Particle> World::particles() const
     return all;
 }
 
+double World::volume() const
+{
+    const Vec3 size = options.high - options.low;
+    return size.x * size.y * size.z;
+}
+
 void World::Sums::add(const Particle& p, const Vec3& w, const Vec3& gravity)
 {
     kinetic_energy += 0.5 * p.mass * (p.v.dot(p.v) + 0.4 * p.radius * p.radius * p.omega.dot(w));

@@ -78,6 +78,10 @@ TEST_CASE("particles that fall through an open side are removed at the time of f
     CHECK_THROWS_AS(world.set_force(2, {1, 0, 0}), io::InvalidInput);
     world.set_velocity(3, {1, 0, 0}, {0, 0, 0});
     CHECK(world.particles().at(0).v.x == Approx(1));
+    world.set_velocities({3}, {{2, 0, 0}}, {{0, 0, 5}});
+    world.set_velocities({3}, {{4, 0, 0}}, {});
+    CHECK(world.particles().at(0).v == granular::Vec3{4, 0, 0});
+    CHECK(world.particles().at(0).omega == granular::Vec3{0, 0, 5});
 }
 
 TEST_CASE("a particle that leaves through another side ends the run unless lost particles are deleted",

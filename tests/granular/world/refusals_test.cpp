@@ -121,6 +121,12 @@ TEST_CASE("a world refuses wrong boundaries, laws and velocities", "[granular][r
     CHECK(refusal([&] {
               world.set_velocity(0, {1, 0, 0}, {0, infinite, 0});
           }) == "velocity of particle 0: must be finite, got inf");
+    CHECK(refusal([&] {
+              world.set_force(0, {0, none, 0});
+          }) == "force on particle 0: must be finite, got nan");
+    CHECK(refusal([&] {
+              world.set_force(0, {0, -1e40, 0});
+          }) == "force on particle 0: must be in the range of single precision, up to 3.4e38, got -1e+40");
     CHECK(world.count() == 1);
     CHECK(world.particles()[0].v == granular::Vec3{0, 0, 0});
 }
@@ -154,6 +160,17 @@ TEST_CASE("a world refuses wrong particles and names their ids", "[granular][ref
           "particle 1: the mass must be in the range of single precision, 1.2e-38 to 8.5e37 kg, got 1e-40");
     CHECK(particle([](Particle& p) { p.mass = 1e-40, p.fixed = true; }) == "nothing is refused");
     CHECK(world.count() == 2);
+    const std::vector<Particle> second_is_wrong = {{.r = {0.7, 0.7, 0.7}, .radius = 0.01}, {.radius = -1}};
+    CHECK(refusal([&] { world.add(second_is_wrong); }) == "particle 3: the radius must be positive, got -1");
+    CHECK(world.count() == 2);
+    CHECK(world.add(std::vector(second_is_wrong.begin(), second_is_wrong.begin() + 1)) == 2);
+    CHECK(refusal([&] {
+              world.set_velocities({2, 3}, {{1, 0, 0}, {1, 0, 0}}, {});
+          }) == "velocity: no particle has this id, got 3");
+    CHECK(refusal([&] {
+              world.set_velocities({2, 0}, {{1, 0, 0}, {1e40, 0, 0}}, {});
+          }) == "velocity of particle 0: must be in the range of single precision, up to 3.4e38, got 1e+40");
+    CHECK(world.particles()[2].v == granular::Vec3{0, 0, 0});
 }
 
 TEST_CASE("a world refuses a domain of too many or too few cells", "[granular][refusals]")

@@ -6,6 +6,7 @@
 #include "granular/running/watch_report.hpp"
 #include "granular/stages/change_history.hpp"
 #include "granular/stages/stages.hpp"
+#include "granular/stages/step_check.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -119,42 +120,24 @@ private:
         insert_particles(c);
     }
 
-    /// Compares the step with World::step_limits. Warns above 1/5 of the Rayleigh time or 1/15 of the
-    /// collision time. Rejects a step above the stability limit, the smaller of the Rayleigh time and 2/π of
-    /// the collision time, unless --force is given, or was given when the run that is resumed was started.
+    /// Rejects a step above the stability limit, unless --force is given, or was given when the run that is
+    /// resumed was started.
     void check_step() const
     {
-        const World::StepLimits limits = c.world->step_limits();
-        const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
-        if (c.h > stable) {
-            const std::string what =
-                io::formatted("step must not be above %.3g s, the stability limit, got %g", stable, c.h);
+        const auto warn_at = [&](const std::string& pointer, const std::string& what) {
+            warn(c.source.place(pointer) + ": " + what);
+        };
+        const auto is_accepted = [&](bool is_of_stage) {
+            if (o.force || (is_of_stage && o.resume)) return true;
             const bool other_laws = std::any_of(from.pointers.begin(), from.pointers.end(),
                                                 [](const std::string& p) { return p.starts_with("/laws"); });
-            const bool accepted =  // at the start of the run
-                o.force || (o.resume && earlier_case(o.output) && !other_laws);
-            if (!accepted) c.source.fail("/step", what + "; --force overrides");
-            warn(c.source.place("/step") + ": " + what);
-        } else if (c.h > 0.2 * limits.rayleigh || c.h > limits.collision / 15) {
-            warn(c.source.place("/step") + ": " +
-                 io::formatted("%g s is coarse: %.2g of the Rayleigh time, %.2g of the collision time", c.h,
-                               c.h / limits.rayleigh, c.h / limits.collision));
-        }
-        if (c.stages != nullptr && c.h <= stable) check_step_of_stages();
-        if (c.end < c.h) c.source.fail("/end", "end must be at least one step, got " + io::shortest(c.end));
-    }
-
-    /// The same with the laws of the stages
-    void check_step_of_stages() const
-    {
-        c.stages->each_step_limit(*c.world, [&](const std::string& at, const World::StepLimits& limits) {
-            const double stable = std::min(limits.rayleigh, 2 / M_PI * limits.collision);
-            if (c.h <= stable) return;
-            const std::string what = io::formatted(
-                "the stability limit of the step is %.3g s with these laws, the step is %g", stable, c.h);
-            if (!o.force && !o.resume) c.source.fail(at, what + "; --force overrides");
-            warn(c.source.place(at) + ": " + what);
-        });
+            return o.resume && earlier_case(o.output) && !other_laws;  // at the start of the run
+        };
+        const auto above = [&](const std::string& pointer, const std::string& what) {
+            if (!is_accepted(pointer != "/step")) c.source.fail(pointer, what + "; --force overrides");
+            warn_at(pointer, what);
+        };
+        granular::check_step(c, above, warn_at);
     }
 
     /// Restores the last checkpoint or, if it is damaged, the one before. Returns false if there is none.

@@ -110,7 +110,7 @@ private:
     void options(ObjectReader& o)
     {
         read_domain(o.object("domain"), world);
-        world.device = environment.device;
+        world.device = environment.device, world.removable = environment.removable;
         world.gravity = o.vec3("gravity", Vec3{0, 0, -9.81});
         out.h = world.h = o.positive("step");
         out.end = o.positive("end");

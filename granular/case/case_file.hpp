@@ -54,6 +54,8 @@ struct Environment {
     std::vector<Setting> settings = {};      ///< changes of entries, applied in this order
     std::optional<std::uint64_t> seed = {};  ///< seed of the first fill; the next fills have seed + 1, ...
     std::string folder = {};  ///< that contains all files which the case names; empty: they may be anywhere
+    std::string base = {};    ///< folder of relative names of files; empty: the current one
+    bool removable = false;   ///< whether World::remove() is used beside stages
     /// Case of the run that is continued, or nullptr. Its intervals replace those that the case does not
     /// state.
     const io::JsonSource* continues = nullptr;

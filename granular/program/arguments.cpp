@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/arguments.hpp"
 
+#include "granular/program/device_name.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/running/sink.hpp"
 #include "io/error.hpp"
@@ -19,15 +20,6 @@
 namespace hilda::granular {
 
 namespace {
-
-std::optional<Device> device_of(const std::string& name)
-{
-    if (name == "cpu") return Device{};
-    if (name == "cuda") return Device{.kind = Device::cuda};
-    const auto number = io::number_in<int>(name.starts_with("cuda:") ? name.substr(5) : "");
-    if (number && *number >= 0) return Device{.kind = Device::cuda, .number = *number};
-    return {};
-}
 
 /// Throws io::UsageError for the first argument that is no option of the program, if there is one.
 void refuse_extras(const CLI::App& app)
@@ -126,7 +118,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
           }));
     value("--device", "cpu|cuda[:N]", "device: the CPU, or the GPU with number N; default: cpu",
           [&](const std::string& option, const std::string& text) {
-              const std::optional<Device> device = device_of(text);
+              const std::optional<Device> device = device_named(text);
               if (!device) io::refuse_option(option, "must be cpu, cuda or cuda:N", text);
               o.device = *device;
               o.device_name = text;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build backend of the Python package (PEP 517).
+"""Build backend of the Python packages hilda and hilda_granular (PEP 517).
 
-Compiles the extension module by CMake in build/python-cpython-311, and packs it with the files of python/hilda into a wheel.
+Compiles the extension modules by CMake in build/python-cpython-311, and packs them with the files of python/ into one wheel.
 Uses the standard library only. Environment: HILDA_CMAKE_ARGS has further arguments of CMake,
 CMAKE_BUILD_PARALLEL_LEVEL the number of jobs.
 """
@@ -20,6 +20,7 @@ import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+MODULES = {"hilda": "_hilda", "hilda_granular": "_granular"}  # the extension module of each package
 BUILD = ROOT / "build" / f"python-{sys.implementation.cache_tag}"
 
 
@@ -34,10 +35,14 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    module = compile_module()
-    files = {f"hilda/{path.name}": path for path in sorted((ROOT / "python/hilda").iterdir())
-             if path.suffix in (".py", ".pyi", ".typed")}
-    files[f"hilda/{module.name}"] = module
+    compile_modules()
+    files = {}
+    for package, module in MODULES.items():
+        for path in sorted((ROOT / "python" / package).iterdir()):
+            if path.suffix in (".py", ".pyi", ".typed"):
+                files[f"{package}/{path.name}"] = path
+        compiled = f"{package}/{module}{sysconfig.get_config_var('EXT_SUFFIX')}"
+        files[compiled] = BUILD / "python" / compiled
     return write_wheel(pathlib.Path(wheel_directory), files)
 
 
@@ -52,8 +57,8 @@ def metadata():
     return {**project, "version": version[1]}
 
 
-def compile_module():
-    """Configures and builds the extension module. Returns its path."""
+def compile_modules():
+    """Configures and builds the extension modules."""
     for tool in ("cmake", "c++"):
         if shutil.which(tool) is None:
             raise SystemExit(f"hilda: error: {tool} was not found (Debian: apt-get install g++ cmake)")
@@ -61,8 +66,7 @@ def compile_module():
     command(["cmake", "-S", ROOT, "-B", BUILD, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DHILDA_TESTS=OFF", "-DHILDA_CUDA=OFF",
              "-DHILDA_WITH_PYTHON=ON", f"-DHILDA_PYTHON={sys.executable}", *shlex.split(os.environ.get("HILDA_CMAKE_ARGS", ""))])
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count()))
-    command(["cmake", "--build", BUILD, "--parallel", jobs, "--target", "hilda_python"])
-    return BUILD / "python/hilda" / f"_hilda{sysconfig.get_config_var('EXT_SUFFIX')}"
+    command(["cmake", "--build", BUILD, "--parallel", jobs, "--target", "hilda_python", "hilda_granular_python"])
 
 
 def command(arguments):

@@ -22,7 +22,8 @@ from pages import ROOT, Failure
 
 HERE = pathlib.Path(__file__).resolve().parent
 MARK = ".hilda-site"  # a folder with this file was written by this script
-NEEDS = {"hilda": "hilda", "hilda-granular": "hilda-granular", "python/hilda/__init__.py": "the Python package"}
+NEEDS = {"hilda": "hilda", "hilda-granular": "hilda-granular", "python/hilda/__init__.py": "the Python package",
+         "python/hilda_granular/__init__.py": "the Python package hilda_granular"}
 
 
 def arguments():
@@ -30,7 +31,7 @@ def arguments():
     parser.error = lambda message: sys.exit(f"hilda: error: docs/build: {message}")
     parser.add_argument("--output", metavar="DIR", default=str(ROOT / "build" / "site"), help="folder of the site (default: build/site)")
     parser.add_argument("--build", metavar="DIR", default=str(ROOT / "build" / "release"),
-                        help="build folder with hilda, hilda-granular and python/hilda (default: build/release)")
+                        help="build folder with hilda, hilda-granular and python (default: build/release)")
     parser.add_argument("--jobs", metavar="N", type=int, default=len(os.sched_getaffinity(0)), help="number of processes")
     parser.add_argument("--check-arguments", action="store_true", help="check the arguments and do nothing else")
     options = parser.parse_args()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The public names of the Python package, their docstrings, and their pages."""
+"""The public names of the Python packages, their docstrings, and their pages."""
 import importlib
 import inspect
 import types
@@ -11,11 +11,14 @@ GROUPS = (  # page, title, the modules whose names it has
     ("integrators", "Integrators", ("hilda.integrator", "hilda._hilda")),
     ("studies", "Studies", ("hilda.orders", "hilda.work", "hilda.parameters", "hilda.fitting")),
     ("errors", "Errors", ("hilda.errors",)),
+    ("grains", "Grains", ("hilda_granular.world", "hilda_granular.boundary", "hilda_granular.results")),
+    ("grains-errors", "Errors of grains", ("hilda_granular.errors",)),
 )
+PACKAGES = ("hilda", "hilda_granular")
 INDEX = """# Python interface
 
-The package `hilda` runs models in Python, with NumPy arrays as results. [Python](../../docs/guide/python.md) in the user guide shows
-its use with examples. Arguments and results are in SI units. A bar in a name (`omega_bar`) marks components in a body frame.
+The package `hilda` runs models in Python, with NumPy arrays as results, and `hilda_granular` computes grains. [Python](../../docs/guide/python.md)
+and [Grains in Python](../../docs/guide/python-granular.md) in the user guide show their use with examples. Arguments and results are in SI units. A bar in a name (`omega_bar`) marks components in a body frame.
 
 | page | names |
 | --- | --- |
@@ -46,10 +49,15 @@ def members(thing):
             yield name, member
 
 
+def full_name(package, module, name):
+    """Name by which a user imports it."""
+    return f"{package.__name__}.{name}" if name in package.__all__ else f"{module}.{name}"
+
+
 def documented(package):
     """All public names with their docstrings, as ("hilda.Model.run", text)."""
     for module, name, thing in public(package):
-        shown = module if name is None else f"hilda.{name}" if name in package.__all__ else f"{module}.{name}"
+        shown = module if name is None else full_name(package, module, name)
         yield shown, thing.__doc__ or ""
         if inspect.isclass(thing):
             for member, value in members(thing):
@@ -57,26 +65,26 @@ def documented(package):
 
 
 def write_pages(target):
-    """The pages of the package, which must be importable."""
-    package = importlib.import_module("hilda")
-    names = public(package)
+    """The pages of the packages, which must be importable."""
+    packages = [importlib.import_module(name) for name in PACKAGES]
+    names = [(package, *entry) for package in packages for entry in public(package)]
     groups = list(GROUPS)
     known = {module for _, _, modules in GROUPS for module in modules}
-    for module in dict.fromkeys(module for module, _, _ in names):
+    for package, module in dict.fromkeys((package, module) for package, module, _, _ in names):
         if module not in known:
             short = module.rpartition(".")[2]
             groups.append((short, f"Module {module}" if module in sorted(vars(package)) or "." in module else module, (module,)))
     index = INDEX
     for page, title, modules in groups:
         lines, shown = [title, "=" * len(title), ""], []
-        for module, name, thing in names:
+        for package, module, name, thing in names:
             if module not in modules:
                 continue
             if name is None:
-                if thing.__name__ not in ("hilda.errors",):
+                if not thing.__name__.endswith(".errors"):
                     lines += [f".. automodule:: {module}", ""]
                 continue
-            full = f"hilda.{name}" if name in package.__all__ else f"{module}.{name}"
+            full = full_name(package, module, name)
             shown.append(f"`{full.removeprefix('hilda.')}`")
             if inspect.isclass(thing):
                 lines += [full.removeprefix("hilda."), "-" * len(full.removeprefix("hilda.")), "", f".. autoclass:: {full}", "   :members:",

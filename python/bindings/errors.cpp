@@ -10,14 +10,18 @@ namespace hilda::python {
 
 namespace {
 
-/// A class of hilda.errors. The module is imported before any exception of the library can occur.
-py::object error_class(const char* name) { return py::module_::import("hilda.errors").attr(name); }
+const char* module_of_errors = "";
 
 }  // namespace
 
-void translate_exceptions()
+// The module of Python is imported before any exception of the library can occur.
+py::object error_class(const char* name) { return py::module_::import(module_of_errors).attr(name); }
+
+void translate_exceptions(const char* errors)
 {
-    py::register_exception_translator([](std::exception_ptr thrown) {
+    module_of_errors = errors;
+    // The packages hilda and hilda_granular may be in one process: each translates the exceptions of its own.
+    py::register_local_exception_translator([](std::exception_ptr thrown) {
         if (thrown == nullptr) return;
         const py::object error = python_error(std::move(thrown));
         PyErr_SetObject(py::type::of(error).ptr(), error.ptr());

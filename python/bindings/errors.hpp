@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The exceptions of the library as those of hilda.errors.
+/// The exceptions of the library as those of the module errors of a Python package.
 
 #pragma once
 
@@ -16,11 +16,14 @@ namespace hilda::python {
 
 namespace py = pybind11;
 
-/// From here on, exceptions of the library that leave a function of the module become exceptions of
-/// hilda.errors with the same text.
-void translate_exceptions();
+/// From here on, exceptions of the library that leave a function of the extension module become exceptions of
+/// this module of Python, such as "hilda.errors", with the same text.
+void translate_exceptions(const char* errors);
 
-/// hilda.errors.NumericalFailure with the status and the text
+/// The exception class with this name in that module of Python
+py::object error_class(const char* name);
+
+/// NumericalFailure with the status and the text
 py::object numerical_failure(const io::NumericalFailure& failure, const std::string& text);
 
 /// The exception of Python for one of the library. Other exceptions are thrown again.

@@ -28,10 +28,12 @@ sys.path[:0] = [str(ROOT / "docs" / "site"), str(BUILD / "python")]
 class PythonNames(unittest.TestCase):
     def test_every_public_name_has_a_docstring(self):
         import hilda
+        import hilda_granular
         import python_names
-        names = dict(python_names.documented(hilda))
-        self.assertGreater(len(names), 50)
-        self.assertEqual([name for name, text in names.items() if not text.strip()], [])
+        for package in (hilda, hilda_granular):
+            names = dict(python_names.documented(package))
+            self.assertGreater(len(names), 50)
+            self.assertEqual([name for name, text in names.items() if not text.strip()], [])
 
 
 @unittest.skipIf(MISSING, "not installed: " + ", ".join(MISSING))
@@ -56,10 +58,12 @@ class Site(unittest.TestCase):
 
     def test_every_python_name_has_an_entry(self):
         import hilda
+        import hilda_granular
         import python_names
-        modules = {thing.__name__ for _, name, thing in python_names.public(hilda) if name is None}
-        missing = [name for name, _ in python_names.documented(hilda) if name not in self.identifiers and name not in modules]
-        self.assertEqual(missing, [])
+        for package in (hilda, hilda_granular):
+            modules = {thing.__name__ for _, name, thing in python_names.public(package) if name is None}
+            missing = [name for name, _ in python_names.documented(package) if name not in self.identifiers and name not in modules]
+            self.assertEqual(missing, [])
 
     def test_every_class_and_function_of_the_headers_has_an_entry(self):
         import headers

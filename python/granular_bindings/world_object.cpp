@@ -100,10 +100,7 @@ void WorldObject::recorded(const F& f)
     try {
         ++changes;
         f();
-    } catch (const io::NumericalFailure& e) {
-        failure = e.what();
-        throw;
-    } catch (const io::InvalidInput& e) {
+    } catch (const std::exception& e) {
         failure = e.what();
         throw;
     }

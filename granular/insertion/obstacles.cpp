@@ -67,12 +67,12 @@ Obstacles::Cell Obstacles::cell_of(const Vec3& r) const
     return {index(r.x), index(r.y), index(r.z)};
 }
 
-bool Obstacles::touches(const Vec3& r, double radius) const
+bool Obstacles::touches(const Vec3& r, double radius, double allowed) const
 {
     for (const std::uint32_t k : near) {
         const Boundary& b = world.all_boundaries()[surfaces.boundary_of(k)];
         const bool is_full = b.shape != Boundary::Shape::frustum && is_larger_than(b, radius);
-        if (is_full || surfaces.nearest(k, r, radius).distance < radius) return true;
+        if (is_full || surfaces.nearest(k, r, radius).distance < (1 - allowed) * radius) return true;
     }
     const Cell at = cell_of(r);
     for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x)
@@ -81,7 +81,8 @@ bool Obstacles::touches(const Vec3& r, double radius) const
                 const auto cell = cells.find({x, y, z});
                 if (cell == cells.end()) continue;
                 for (const Sphere& s : cell->second)
-                    if ((s.r - r).norm() < s.radius + radius) return true;
+                    if ((s.r - r).norm() < s.radius + radius - allowed * std::min(s.radius, radius))
+                        return true;
             }
     return false;
 }

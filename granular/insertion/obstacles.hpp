@@ -15,8 +15,9 @@ public:
     /// box
     Obstacles(const World& world, const Vec3& low, const Vec3& high, double R, std::uint16_t replica);
 
-    /// Whether a sphere of at most the radius R within the box touches a particle or a boundary
-    bool touches(const Vec3& r, double radius) const;
+    /// Whether a sphere of at most the radius R within the box overlaps a particle or a boundary by more than
+    /// this part of the smaller radius; 0: whether it touches one
+    bool touches(const Vec3& r, double radius, double allowed = 0) const;
     /// Adds a sphere of at most the radius R.
     void add(const Vec3& r, double radius);
 

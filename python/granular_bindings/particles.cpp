@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/granular_bindings/particles.hpp"
 
+#include "granular/insertion/obstacles.hpp"
 #include "io/error.hpp"
 #include "io/nearest.hpp"
 #include "python/granular_bindings/arrays.hpp"
@@ -115,6 +116,14 @@ int group_of(const granular::Groups* groups, const std::string& name)
     return static_cast<int>(found - names.begin());
 }
 
+[[noreturn]] void refuse_place(std::size_t k, const Particle& p, const std::string& what)
+{
+    std::ostringstream text;
+    text << "World.add: r[" << k << "] must " << what << ", got (" << p.r.x << ", " << p.r.y << ", " << p.r.z
+         << ") m";
+    throw io::InvalidInput(text.str());
+}
+
 /// Throws io::InvalidInput for a centre outside of the domain: the world would fail at the insertion.
 void check_inside(const granular::World& world, const std::vector<Particle>& all)
 {
@@ -125,12 +134,32 @@ void check_inside(const granular::World& world, const std::vector<Particle>& all
     for (std::size_t k = 0; k < all.size(); ++k) {
         const granular::Vec3& r = all[k].r;
         if (is_outside(r.x, low.x, high.x, 0) || is_outside(r.y, low.y, high.y, 1) ||
-            is_outside(r.z, low.z, high.z, 2)) {
-            std::ostringstream text;
-            text << "World.add: r[" << k << "] must be inside the domain, got (" << r.x << ", " << r.y << ", "
-                 << r.z << ") m";
-            throw io::InvalidInput(text.str());
-        }
+            is_outside(r.z, low.z, high.z, 2))
+            refuse_place(k, all[k], "be inside the domain");
+    }
+}
+
+/// The same for overlaps that World::add() does not allow
+void check_overlaps(const granular::World& world, const std::vector<Particle>& all)
+{
+    constexpr double allowed = 0.05;  // of the smaller radius; see World::add()
+    const auto is_valid = [](const Particle& p) { return p.radius > 0; };
+    if (all.empty() || !std::all_of(all.begin(), all.end(), is_valid)) return;  // World::add() refuses them
+    granular::Vec3 low = all[0].r, high = low;
+    double largest = 0;
+    for (const Particle& p : all) {
+        low = {std::min(low.x, p.r.x), std::min(low.y, p.r.y), std::min(low.z, p.r.z)};
+        high = {std::max(high.x, p.r.x), std::max(high.y, p.r.y), std::max(high.z, p.r.z)};
+        largest = std::max(largest, p.radius);
+    }
+    granular::Obstacles obstacles(world, low, high, largest, all[0].replica);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (obstacles.touches(all[k].r, all[k].radius, allowed))
+            refuse_place(
+                k, all[k],
+                "not be that of a particle which overlaps another one or a boundary by more than 5 % "
+                "of a radius");
+        obstacles.add(all[k].r, all[k].radius);
     }
 }
 
@@ -149,6 +178,7 @@ std::uint32_t add(WorldObject& o, const NewParticles& given)
         std::copy_n(given.e.data() + 4 * k, 4, p.e.begin());
     }
     check_inside(o.world(), all);
+    check_overlaps(o.world(), all);
     const std::uint32_t first = o.world().add(all);
     if (groups != nullptr && !all.empty()) groups->add(first, group);
     o.insert();

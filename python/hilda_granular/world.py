@@ -320,8 +320,8 @@ class World:
             replica: number of the replica.
             group: name of a group of the case; default: none.
 
-        Overlaps with other particles and boundaries may be at most 5 % of the smaller radius. A larger one is found
-        at the insertion, and the world cannot be used any more after this error; other errors leave it unchanged.
+        Overlaps with other particles and boundaries may be at most 5 % of the smaller radius. The particles are all
+        added, or none: an error leaves the world unchanged.
         """
         where = "World.add"
         rows = 1 if np.ndim(r) == 1 else len(np.asarray(r))

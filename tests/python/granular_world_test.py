@@ -132,7 +132,8 @@ class Particles(unittest.TestCase):
         self.assertTrue((world.omega[ids] == [0, 0, 7]).all())
         world.set_force([3, 5], [[1e-3, 0, 0], [0, 2e-3, 0]])
         world.step(5)
-        np.testing.assert_allclose(world.v[[3, 5]] * world.mass[[3, 5]][:, None] / world.t, [[1e-3, 0, 0], [0, 2e-3, 0]], rtol=1e-4, atol=1e-9)
+        force = world.v[[3, 5]] * world.mass[[3, 5]][:, None] / world.t
+        np.testing.assert_allclose(force, [[1e-3, 0, 0], [0, 2e-3, 0]], rtol=1e-4, atol=1e-9)
 
     def test_arrays_of_other_types_and_layouts(self):
         world = World(box())
@@ -190,11 +191,33 @@ class Particles(unittest.TestCase):
                            (lambda: world.add(np.zeros((2, 2)), 1e-3), r"r: must have the shape \(2, 3\)")):
             with self.subTest(text=text), self.assertRaisesRegex(InvalidInput, text):
                 call()
+        self.assertEqual(len(world), n + 1)
         world.step(10)
-        with self.assertRaisesRegex(InvalidInput, "overlap"):
-            world.add(world.r[0], 1e-3)
-        with self.assertRaisesRegex(UsageError, "World.step: the world has failed and cannot be used any more: .*overlap"):
-            world.step()
+
+    def test_overlaps_of_new_particles(self):
+        world, expected = World(box()), World(box())
+        place, radius = world.r[0], world.radius[0]
+        far, overlap = [0.025, 0.025, 0.03], r"World.add: r\[{}\] must not be that of a particle which overlaps .* 5 % of a radius, got \("
+        for r, new_radius, index in (([place], 1e-3, 0),
+                                     ([far, place + [0, 0, -radius]], 1e-3, 1),
+                                     ([far, far, [0, 0, 0.03]], 1e-3, 1),  # each other
+                                     ([[0.025, 0.025, 0.94e-3]], 1e-3, 0),  # the floor
+                                     ([[0.025, 0.025, 0.003], [0.025, 0.025, 0.003 + 1.94e-3]], 1e-3, 1)):
+            with self.subTest(r=r), self.assertRaisesRegex(InvalidInput, overlap.format(index)):
+                world.add(r, new_radius)
+        for of in (world, expected):  # the errors have changed nothing
+            of.add([[0.025, 0.025, 0.96e-3], [0.025, 0.025, 0.96e-3 + 1.96e-3]], 1e-3)
+            of.step(50)
+        np.testing.assert_array_equal(world.r, expected.r)
+
+    def test_overlaps_across_a_periodic_side(self):
+        case = box(fill=[], particles=[{"r": [-0.0098, 0, 0.01], "radius": 1e-3}])
+        case["domain"]["periodic"] = [True, False, False]
+        world = World(case)
+        with self.assertRaisesRegex(InvalidInput, "overlaps another one"):
+            world.add([0.0298, 0, 0.01], 1e-3)
+        world.add([0.028, 0, 0.01], 1e-3)
+        self.assertEqual(world.step(5), 5)
 
 
 class Boundaries(unittest.TestCase):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 from typing import Any, Callable, Mapping, TypeVar
 
@@ -18,7 +19,7 @@ from .errors import InvalidInput, UsageError
 from .results import Contacts, Removed, Totals
 
 Source = str | os.PathLike[str] | dict[str, Any]
-F = TypeVar("F", bound=Callable[..., Any])
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class World:
@@ -123,11 +124,11 @@ class World:
             NumericalFailure: a particle is lost, forces are not finite, ...
             UsageError: another thread uses the world, or it has failed before.
         """
-        if n < 0:
+        if operator.index(n) < 0:
             raise InvalidInput(f"World.step: n must not be negative, got {n}")
-        return self._core.advance(int(n), self._before if self._functions else None)
+        return self._core.advance(operator.index(n), self._before if self._functions else None)
 
-    def before_each_step(self, function: F) -> F:
+    def before_each_step(self, function: Function) -> Function:
         """Calls function(world) before each step, at the time of its beginning. Returns the function.
 
         It may set velocities and loads of boundaries and particles, and add particles. step() and run() end before

@@ -12,8 +12,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <initializer_list>
 #include <iostream>
+#include <iterator>
 #include <utility>
 
 namespace hilda::io {
@@ -39,12 +39,14 @@ extern "C" void end_with_message(int signal)
     _exit(128 + signal);
 }
 
+constexpr int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
+
 void handle(void (*handler)(int))
 {
     struct sigaction action {};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : interrupts) {
         struct sigaction present {};
         // nohup ignores SIGHUP: the program then survives the end of its terminal
         if (signal == SIGHUP && sigaction(signal, nullptr, &present) == 0 && present.sa_handler == SIG_IGN)
@@ -52,6 +54,8 @@ void handle(void (*handler)(int))
         sigaction(signal, &action, nullptr);
     }
 }
+
+struct sigaction before_interrupt[std::size(interrupts)];  // of an Interrupt
 
 }  // namespace
 
@@ -108,8 +112,17 @@ void Verbosity::log(const std::string& what) const
     if (verbose && !quiet) message("hilda: " + what + '\n');
 }
 
-Interrupt::Interrupt() { handle(record_signal); }
-Interrupt::~Interrupt() { handle(SIG_DFL); }
+Interrupt::Interrupt()
+{
+    for (size_t k = 0; k < std::size(interrupts); ++k)
+        sigaction(interrupts[k], nullptr, &before_interrupt[k]);
+    handle(record_signal);
+}
+Interrupt::~Interrupt()
+{
+    for (size_t k = 0; k < std::size(interrupts); ++k)
+        sigaction(interrupts[k], &before_interrupt[k], nullptr);
+}
 EndOnSignal::EndOnSignal(const std::string& message)
 {
     const std::string line = "hilda: " + message + '\n';
@@ -120,5 +133,6 @@ EndOnSignal::~EndOnSignal() { handle(SIG_DFL); }
 void EndOnSignal::ignore() { handle(SIG_IGN); }
 
 int Interrupt::caught() { return signal_caught; }
+void Interrupt::forget() { signal_caught = 0; }
 
 }  // namespace hilda::io

@@ -52,7 +52,7 @@ struct Verbosity {
 /// of the run, the second terminates the process.
 ///
 /// During the lifetime of an object of this class, the first of these signals is recorded and does not end
-/// the program.
+/// the program. The handlers of before are restored at its end. There is one such object at a time.
 class Interrupt {
 public:
     Interrupt();
@@ -62,6 +62,8 @@ public:
 
     /// Number of the recorded signal, or 0
     static int caught();
+    /// Forgets the recorded signal, in a program that continues after it.
+    static void forget();
 };
 
 /// During the lifetime of an object of this class, SIGINT, SIGTERM and SIGHUP end the process at once, with

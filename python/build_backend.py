@@ -46,6 +46,15 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return write_wheel(pathlib.Path(wheel_directory), files)
 
 
+def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
+    """A wheel with a path to the packages of the build folder, which are links to the files of the tree (PEP 660)."""
+    compile_modules()
+    return write_wheel(pathlib.Path(wheel_directory), {"hilda.pth": f"{BUILD / 'python'}\n"})
+
+
+prepare_metadata_for_build_editable = prepare_metadata_for_build_wheel
+
+
 def build_sdist(sdist_directory, config_settings=None):
     raise SystemExit("hilda: error: there is no source distribution; install from a clone of the repository")
 
@@ -95,7 +104,7 @@ def wheel_information(project):
 
 
 def write_wheel(folder, files):
-    """Writes the wheel with these files (PEP 427), and returns its name."""
+    """Writes the wheel with these files, paths or texts (PEP 427), and returns its name."""
     project = metadata()
     info, texts = wheel_information(project)
     name = f"hilda-{project['version']}-{wheel_tag()}.whl"
@@ -107,7 +116,7 @@ def write_wheel(folder, files):
             record.append(f"{path},sha256={digest},{len(content)}")
 
         for path, file in files.items():
-            add(path, file.read_bytes())
+            add(path, file.encode() if isinstance(file, str) else file.read_bytes())
         for path, text in texts.items():
             add(path, text.encode())
         record.append(f"{info}/RECORD,,")

@@ -2,6 +2,7 @@
 /// The extension module hilda._hilda. The package hilda has its public names.
 
 #include "hilda/version.hpp"
+#include "python/bindings/cosim.hpp"
 #include "python/bindings/errors.hpp"
 #include "python/bindings/fit.hpp"
 #include "python/bindings/model.hpp"
@@ -19,4 +20,5 @@ PYBIND11_MODULE(_hilda, m)
     define_system(m);
     define_run(m);
     define_fit(m);
+    define_cosim(m);
 }

@@ -15,10 +15,11 @@ from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
 from .parameters import Sweep, sweep
 from .result import BodyResult, Events, Result
+from .stored import StoredResult, cosim, load
 from .surface import Surface
 from .work import WorkPrecision, work_precision
 
 __all__ = ["BodyResult", "Convergence", "Error", "Events", "FileError", "Fit", "Integrator", "InvalidInput", "Model",
-           "NotAvailable", "NumericalFailure", "Result", "Saddle", "State", "Surface", "Sweep", "System", "UsageError",
-           "WorkPrecision", "__version__", "convergence", "errors", "fit", "integrators", "problems", "run", "so3",
-           "sweep", "work_precision"]
+           "NotAvailable", "NumericalFailure", "Result", "Saddle", "State", "StoredResult", "Surface", "Sweep", "System",
+           "UsageError", "WorkPrecision", "__version__", "convergence", "cosim", "errors", "fit", "integrators", "load",
+           "problems", "run", "so3", "sweep", "work_precision"]

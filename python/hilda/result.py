@@ -88,7 +88,8 @@ class Result(Motions):
 
     def __getitem__(self, body: str | int) -> BodyResult:
         """The rows of one body, by its name or number."""
-        return BodyResult(self, self.index(body))
+        number = self.index(body)
+        return BodyResult(self, number, self.bodies[number])
 
     def index(self, body: str | int) -> int:
         """Number of a body in the arrays."""
@@ -148,8 +149,8 @@ class Events(Motions):
 class BodyResult(Motions):
     """The rows of one body: views of the arrays of a Result, without the index of the body."""
 
-    def __init__(self, result: Result, number: int) -> None:
-        self.name = result.bodies[number]
+    def __init__(self, result: Motions, number: int, name: str) -> None:
+        self.name = name
         for name in Motions.__annotations__:
             array = getattr(result, name)
             setattr(self, name, array if array is None or name == "t" else array[:, number])

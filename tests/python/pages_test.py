@@ -5,6 +5,7 @@ import contextlib
 import io
 import pathlib
 import re
+import tempfile
 import unittest
 
 import matplotlib
@@ -20,12 +21,18 @@ def check_pages(test, package, expected):
     pages = [page for page in pages if f"\nimport {package}\n" in page.read_text() and page.parent.name not in ("tutorials", "site")]
     test.assertTrue({ROOT / page for page in expected} <= {*pages})
     for page in pages:
-        names = {}
-        text = page.read_text()
-        for block in re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M):
-            line = text.count("\n", 0, block.start(1))
-            with test.subTest(page=page.name, line=line + 1), contextlib.redirect_stdout(io.StringIO()):
-                exec(compile("\n" * line + block[1], str(page), "exec"), names)
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            pathlib.Path("examples").symlink_to(ROOT / "examples")  # the commands of the pages are given at the root of a clone
+            check_page(test, page)
+
+
+def check_page(test, page):
+    names = {}
+    text = page.read_text()
+    for block in re.finditer(r"^```python\n(.*?)^```", text, re.S | re.M):
+        line = text.count("\n", 0, block.start(1))
+        with test.subTest(page=page.name, line=line + 1), contextlib.redirect_stdout(io.StringIO()):
+            exec(compile("\n" * line + block[1], str(page), "exec"), names)
 
 
 class Pages(unittest.TestCase):

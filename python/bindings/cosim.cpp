@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/bindings/cosim.hpp"
+
+#include "io/program.hpp"
+#include "studies/cosim/run_cosim.hpp"
+
+#include <pybind11/stl.h>
+
+namespace hilda::python {
+
+namespace py = pybind11;
+
+void define_cosim(py::module_& m)
+{
+    m.def(
+        "_cosim",
+        [](const std::string& file, const std::string& output, const std::vector<std::string>& set,
+           std::optional<double> end, std::optional<double> interval, bool contacts, bool reactions,
+           double checkpoint, int threads, bool fix_initial, bool force, bool resume) {
+            studies::CosimOptions options{.file = file};
+            studies::RunOptions& o = options.run;
+            o.output = output;
+            o.set = set;
+            o.end = end;
+            o.interval = interval;
+            o.checkpoint = checkpoint;
+            o.threads = threads;
+            o.fix_initial = fix_initial;
+            o.force = force;
+            o.resume = resume;
+            o.quiet = true;
+            o.command_line = "hilda.cosim";
+            if (contacts) o.outputs["--contacts"] = "";
+            if (reactions) o.outputs["--reactions"] = "";
+            const py::gil_scoped_release release;
+            io::Interrupt::forget();
+            return studies::run_cosim(options);
+        },
+        py::arg("file"), py::arg("output"), py::arg("set"), py::arg("end"), py::arg("interval"),
+        py::arg("contacts"), py::arg("reactions"), py::arg("checkpoint"), py::arg("threads"),
+        py::arg("fix_initial"), py::arg("force"), py::arg("resume"));
+}
+
+}  // namespace hilda::python

@@ -65,17 +65,19 @@ class Model:
         """Adds a joint, a driver or another constraint of this type, such as "revolute", or a function of two bodies.
 
         A function `phi(x)` returns the position rows, shape (rows,), which are zero. x is a State with two bodies: x.r[0],
-        x.A[0] are of body i, x.r[1], x.A[1] of body j; x.t is the time. The ground is at rest at the origin. Keys:
+        x.A[0] are of body i, x.r[1], x.A[1] of body j; x.t is the time. The ground is at rest at the origin.
 
-            body_i, body_j: names; one may be "ground".
-            rows: number of rows, 1 to 8; default 1.
-            name: default: that of the function.
-            variation(x): (C_i, C_j), shapes (rows, 6): derivatives of the rows by r (global frame) and by the rotation
-                theta (body frame: A changes by A tilde(theta)) of body i and of body j.
-            nu(x): minus the derivative by time, shape (rows,).
-            gamma(x): gamma in C (rddot, omegadot_bar) = gamma, the second time derivative of the rows; shape (rows,).
+        Keys of a function:
 
-        Those that are not given are computed by differences, with errors of about 1e-10 (variation, nu) and 1e-9 (gamma).
+        - body_i, body_j: names; one may be "ground".
+        - rows: number of rows, 1 to 8; default 1.
+        - name: default: that of the function.
+        - variation(x): (C_i, C_j), shapes (rows, 6): derivatives of the rows by r (global frame) and by the rotation
+          theta (body frame: A changes by A tilde(theta)) of body i and of body j.
+        - nu(x): minus the derivative by time, shape (rows,).
+        - gamma(x): gamma in C (rddot, omegadot_bar) = gamma, the second time derivative of the rows; shape (rows,).
+
+        Functions that are not given are computed by differences, with errors of about 1e-10 (variation, nu) and 1e-9 (gamma).
         A call takes about 2 us, and differences take 24 of them for `variation`.
         """
         if not callable(type):

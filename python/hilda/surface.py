@@ -13,8 +13,8 @@ class Surface:
     A derived class implements value() and gradient(), which are called in the neighbourhood of the surface. G grows by
     about 1 per metre there. It may implement
 
-        hessian(a)  second derivatives of G, shape (3, 3); otherwise differences of the gradient with an error of 1e-10,
-        support(u)  for a convex body: the point of the surface that is farthest along the unit vector u; shape (3,).
+    - hessian(a): second derivatives of G, shape (3, 3); otherwise differences of the gradient with an error of 1e-10,
+    - support(u): for a convex body, the point of the surface that is farthest along the unit vector u; shape (3,).
 
     Attributes:
         size: characteristic length [m], by which tolerances are scaled; 0 for an unbounded surface.

@@ -80,6 +80,8 @@ FinishedJobs::FinishedJobs(const std::string& directory, const Identity& identit
                            const std::string& command)
     : directory(directory), path(part_file(directory))
 {
+    // In an empty directory the study begins: a job array starts and continues with the same command.
+    if (resume && !in(directory)) resume = !io::is_missing_or_empty(directory);
     if (resume && !in(directory))
         throw io::UsageError(directory + ": has no interrupted study; --resume needs its file study.part");
     bool is_new = !resume;

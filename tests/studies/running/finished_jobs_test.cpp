@@ -112,7 +112,10 @@ TEST_CASE("a record that was cut off or damaged is dropped, and the preceding on
 TEST_CASE("an interrupted study continues with the same options only", "[studies][resume]")
 {
     const Scratch in;
+    write(in / "other.txt", "");
     CHECK_THROWS_WITH(FinishedJobs(in.path, identity, true), Contains("has no interrupted study"));
+    fs::remove(in / "other.txt");
+    CHECK(FinishedJobs(in.path, identity, true).count() == 0);  // an empty directory: the study begins
     keep(in, 1);
     FinishedJobs::Identity other = identity;
     other["--steps"] = "0.002";

@@ -399,6 +399,7 @@ Description read_model(std::string_view text, const std::string& file, std::span
     const std::vector<std::string> warnings = parameters.warnings();
     description.warnings.insert(description.warnings.end(), warnings.begin(), warnings.end());
     description.parameters = parameters.all();
+    description.files = source.files;
     return description;
 }
 
@@ -419,7 +420,9 @@ Description load_model(const std::string& path, std::span<const std::string> set
     if (error || !in.read(text.data(), static_cast<std::streamsize>(size)))
         throw lie::InvalidInput(
             path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
-    return read_model(text, path, set, normal_rows, fs::path(path).parent_path().string());
+    Description description = read_model(text, path, set, normal_rows, fs::path(path).parent_path().string());
+    description.files.insert(description.files.begin(), path);
+    return description;
 }
 
 std::string text_at(const Description& description, const State& x)

@@ -27,7 +27,8 @@ struct Description {
     std::vector<std::unique_ptr<Output>> outputs;
     std::vector<Event> events;
     std::vector<std::pair<std::string, double>> parameters;  ///< names and values in the order of the file
-    std::vector<std::string> warnings;                       ///< one line each, with the location
+    std::vector<std::string> files;     ///< that were read: the model file, then those that it names
+    std::vector<std::string> warnings;  ///< one line each, with the location
     std::vector<std::string>
         constraint_place;                    ///< location "FILE:LINE:COL (/constraints/3)" of each constraint
     std::vector<std::string> force_place;    ///< location of each element of Model::forces()

@@ -51,6 +51,8 @@ public:
     Json root;
     std::string folder;                      ///< of the files that the text names; "": the current directory
     std::string base;                        ///< of relative names of files; "": the current directory
+    /// Files that the text names: the paths that ObjectReader::file() has returned
+    mutable std::vector<std::string> files;
     const Parameters* parameters = nullptr;  ///< of the readers; nullptr: numbers are written as digits
 
     /// `file` is the file name used in messages. A file of the program itself may have longer strings.

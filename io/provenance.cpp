@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/provenance.hpp"
 
+#include "io/archive.hpp"
+#include "io/files.hpp"
+#include "io/message.hpp"
+
+#include <filesystem>
 #include <fstream>
+#include <limits>
+#include <set>
 
 namespace hilda::io {
 
@@ -22,6 +29,33 @@ Json provenance(const Build& build, const std::vector<std::pair<std::string, std
     return {{"version", build.number},      {"git", build.git},           {"build_type", build.build_type},
             {"flags", build.flags},         {"compiler", build.compiler}, {"libraries", all},
             {"command_line", command_line}, {"cpu", processor()},         {"threads", threads}};
+}
+
+std::string checksum_of_file(const std::string& file)
+{
+    try {
+        const std::string bytes = read_file(file, std::numeric_limits<std::size_t>::max());
+        return formatted("%016llx", static_cast<unsigned long long>(checksum(bytes.data(), bytes.size())));
+    } catch (const IoError&) {
+        return "";
+    }
+}
+
+Json inputs(const std::vector<std::string>& files)
+{
+    Json all = Json::array();
+    std::set<std::string> listed;
+    for (const std::string& file : files) {
+        if (!listed.insert(file).second) continue;
+        Json one = {{"file", file}};
+        if (const std::string sum = checksum_of_file(file); !sum.empty()) {
+            std::error_code error;
+            one["bytes"] = static_cast<double>(std::filesystem::file_size(file, error));
+            one["checksum"] = sum;
+        }
+        all.push_back(std::move(one));
+    }
+    return all;
 }
 
 std::string shell_quoted(int argc, char** argv)

@@ -23,6 +23,12 @@ struct Build {
 Json provenance(const Build& build, const std::vector<std::pair<std::string, std::string>>& libraries,
                 const std::string& command_line, int threads);
 
+/// The files with their sizes and checksums (io::checksum), each once: [{"file": ..., "bytes": ...,
+/// "checksum": ...}, ...]. A file that cannot be read any more has no checksum.
+Json inputs(const std::vector<std::string>& files);
+/// The checksum of a file as in inputs(); empty if it cannot be read
+std::string checksum_of_file(const std::string& file);
+
 /// Words of a command line, each quoted for a shell if it needs quotes
 std::string shell_quoted(int argc, char** argv);
 

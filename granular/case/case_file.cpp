@@ -12,9 +12,11 @@
 #include "granular/reading/clump_keys.hpp"
 #include "io/error.hpp"
 #include "io/nearest.hpp"
+#include "io/provenance.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 namespace hilda::granular {
@@ -314,6 +316,14 @@ void insert_particles(const Case& c)
     } catch (const NotFiniteState& e) {
         refuse(e.what());
     }
+}
+
+io::Json inputs_of(const Case& c, const std::string& file)
+{
+    std::vector<std::string> files = c.source.files;
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) files.insert(files.begin(), file);
+    return io::inputs(files);
 }
 
 }  // namespace hilda::granular

@@ -70,6 +70,9 @@ Case read_case(const std::string& text, const std::string& file, const Environme
 /// The same of a text that was read before. The changes of the environment are not applied.
 Case read_case(const io::JsonSource& source, const Environment& environment);
 
+/// The case file, if it is one, and the files that it names, as io::inputs()
+io::Json inputs_of(const Case& c, const std::string& file);
+
 /// Inserts the particles into the world. Throws io::InvalidInput with the place of the entry whose particles
 /// are invalid.
 void insert_particles(const Case& c);

@@ -147,8 +147,10 @@ int run_case(const Options& o, int processes)
     options.provenance = provenance(o.command_line, o.threads, o.device_name);
     if (processes > 1) options.provenance["processes"] = processes;
     const auto read = [&] { return read_run(options, text, here); };
-    if (o.exchanges) return exchange(options, read());
-    return run(options, read(), read);
+    Continuation first = read();
+    options.provenance["inputs"] = inputs_of(first.c, o.run.file);
+    if (o.exchanges) return exchange(options, std::move(first));
+    return run(options, std::move(first), read);
 }
 
 /// Refuses what a run on several processes does not support, and makes its engine one of all processes.

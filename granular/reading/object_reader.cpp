@@ -105,6 +105,7 @@ std::string ObjectReader::file(std::string_view key)
     namespace fs = std::filesystem;
     std::string path = text(key);
     if (!source.base.empty()) path = (fs::path(source.base) / path).string();
+    source.files.push_back(path);
     if (source.folder.empty()) return path;
     std::error_code error;
     const fs::path folder = fs::weakly_canonical(source.folder, error),

@@ -24,8 +24,9 @@ std::unique_ptr<granular::Soil> local_grains(const CosimFile& file, double end, 
     here.settings = {{"/end=" + io::shortest(end)}};
     here.folder = std::filesystem::absolute(file.granular_case).parent_path().string();
     const std::string text = io::read_file(file.granular_case, io::JsonSource::max_bytes);
-    return std::make_unique<granular::Soil>(options, granular::read_run(options, text, here),
-                                            boundaries(file));
+    granular::Continuation run = granular::read_run(options, text, here);
+    options.provenance["inputs"] = granular::inputs_of(run.c, options.file);
+    return std::make_unique<granular::Soil>(options, std::move(run), boundaries(file));
 }
 
 }  // namespace hilda::studies

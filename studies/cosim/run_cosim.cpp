@@ -97,6 +97,7 @@ int run_rank(const CosimOptions& options)
         grains = options.transport == "pipe" ? grains_of_process(file, end, o) : grains_here(file, end, o);
     GrainCoupling coupling(file, std::move(grains));
     o.model = file.model, o.coupling = &coupling;
+    o.inputs = {options.file};
     o.step = coupling.H(), o.end = end;
     if (file.interval) o.interval = file.interval;
     const io::Interrupt interrupt;

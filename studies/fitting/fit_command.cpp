@@ -7,6 +7,7 @@
 #include "io/message.hpp"
 #include "io/option_values.hpp"
 #include "io/program.hpp"
+#include "io/provenance.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/framework/table.hpp"
@@ -95,6 +96,9 @@ io::Json as_json(const FitResult& result, const FitProblem& problem, const FitOp
     all["reason"] = result.reason;
     all["warnings"] = result.warnings;
     all["provenance"] = provenance(options.command_line, problem.jobs);
+    std::vector<std::string> files = result.model.files;
+    files.push_back(options.data);
+    all["provenance"]["inputs"] = io::inputs(files);
     return all;
 }
 

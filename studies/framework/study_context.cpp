@@ -7,6 +7,7 @@
 #include "io/message.hpp"
 #include "io/nearest.hpp"
 #include "io/program.hpp"
+#include "io/provenance.hpp"
 #include "studies/distribution/ranks.hpp"
 #include "studies/running/latex.hpp"
 #include "studies/running/named_model.hpp"
@@ -265,6 +266,10 @@ io::Json StudyContext::whole() const
                     {"seed", options.seed.value_or(0)},
                     {"set", options.set},
                     {"provenance", provenance(options.command_line, options.jobs)}};
+    std::vector<std::string> models;
+    for (const std::string& problem : options.problems)
+        if (is_model_path(problem)) models.push_back(problem);
+    all["provenance"]["inputs"] = io::inputs(models);
     if (options.fix_initial) all["fix_initial"] = true;
     if (options.repeats > 0) all["repeats"] = options.repeats;
     all.update(json);

@@ -8,6 +8,7 @@
 #include "io/json.hpp"
 #include "io/message.hpp"
 #include "io/program.hpp"
+#include "io/provenance.hpp"
 #include "studies/kinematics/drives.hpp"
 #include "studies/kinematics/prescribed_motion.hpp"
 #include "studies/running/named_model.hpp"
@@ -126,6 +127,7 @@ io::Json summary_of(const KinematicsOptions& options, const dae::Description& d,
                         {"largest_torque", reached.largest.T.norm()},
                         {"files", files},
                         {"provenance", provenance(options.command_line, 1)}};
+    summary["provenance"]["inputs"] = io::inputs(d.files);
     for (const Reached::Drive& drive : reached.drives)
         summary["drives"].push_back(
             {{"name", drive.name}, {"largest_load", drive.load}, {"largest_power", drive.power}});

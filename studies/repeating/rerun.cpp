@@ -4,6 +4,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
+#include "io/provenance.hpp"
 #include "studies/program/granular_program.hpp"
 #include "studies/repeating/compare_results.hpp"
 #include "studies/running/provenance.hpp"
@@ -29,7 +30,24 @@ namespace {
 
 struct Record {
     std::string file, command, version;
+    std::vector<std::pair<std::string, std::string>> inputs = {};  ///< files with their checksums
 };
+
+/// The files that a result was computed from
+std::vector<std::pair<std::string, std::string>> inputs_of(const io::Json& provenance)
+{
+    std::vector<std::pair<std::string, std::string>> all;
+    const io::Json::Member* const inputs = provenance.member("inputs");
+    for (size_t k = 0; inputs != nullptr && k < inputs->value.size(); ++k) {
+        const io::Json::Member *const file = inputs->value.at(k).member("file"), *const sum =
+                                                                                     inputs->value.at(k)
+                                                                                         .member("checksum");
+        if (file != nullptr && sum != nullptr && file->value.string() != nullptr &&
+            sum->value.string() != nullptr)
+            all.emplace_back(*file->value.string(), *sum->value.string());
+    }
+    return all;
+}
 
 /// The record in a directory; nothing without a summary.json or study.json
 std::optional<Record> record_in(const fs::path& directory)
@@ -47,7 +65,8 @@ std::optional<Record> record_in(const fs::path& directory)
         };
         if (text("command_line").empty())
             throw io::InvalidInput(file + ": has no command line in its provenance");
-        return Record{file, text("command_line"), fmt::format("hilda {} ({})", text("version"), text("git"))};
+        return Record{file, text("command_line"), fmt::format("hilda {} ({})", text("version"), text("git")),
+                      inputs_of(provenance->value)};
     }
     return {};
 }
@@ -186,9 +205,16 @@ int rerun(const RerunOptions& options)
         name == "hilda" ? fs::read_symlink("/proc/self/exe", error).string() : granular_program();
     std::cout << "recorded by   " << record.version << ", repeated by " << version_line()
               << "\nrepeats       " << fmt::format("{}\n", fmt::join(words, " ")) << std::flush;
+    bool equal = true;
+    for (const auto& [file, checksum] : record.inputs) {
+        if (io::checksum_of_file(file) == checksum) continue;
+        std::cout << "different     input " << file
+                  << ": has changed since, or is not in the present folder\n"
+                  << std::flush;
+        equal = false;
+    }
     const int code = run(program, words);
     if (code != io::exit_code::done && code != io::exit_code::numerical_failure) return code;
-    bool equal = true;
     for (const FileComparison& file :
          compare_results(directory, repetition_of(directory, output), options.tolerance)) {
         std::cout << fmt::format("{}  {}: {}\n", file.is_equal ? "equal       " : "different   ", file.file,

@@ -9,6 +9,7 @@
 #include "io/message.hpp"
 #include "io/option_values.hpp"
 #include "io/program.hpp"
+#include "io/provenance.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
@@ -176,6 +177,9 @@ void SingleRun::read()
     result.set = description.changes;
     result.parameters = description.parameters;
     result.command_line = options.command_line;
+    std::vector<std::string> files = options.inputs;
+    files.insert(files.end(), description.files.begin(), description.files.end());
+    result.inputs = io::inputs(files);
     result.threads = 1;  // the number used, independent of --threads
     result.directory = directory;
     settings = settings_of_run();

@@ -95,6 +95,7 @@ io::Json summary(const RunResult& r)
                      {"steps_per_second",
                       r.wall_seconds > 0 ? static_cast<double>(r.statistics.steps) / r.wall_seconds : 0}};
     out["provenance"] = provenance(r.command_line, r.threads);
+    out["provenance"]["inputs"] = r.inputs;
     if (r.resumed_at >= 0) out["provenance"]["resumed_at_step"] = r.resumed_at;
     return out;
 }

@@ -53,7 +53,8 @@ struct RunResult {
     io::Json watch;                      ///< see Watch::json()
     std::optional<ErrorEstimate> error;  ///< of --error
     double setup_seconds = 0, wall_seconds = 0;
-    long resumed_at = -1;  ///< number of the step; -1: not resumed
+    long resumed_at = -1;                 ///< number of the step; -1: not resumed
+    io::Json inputs = io::Json::array();  ///< io::inputs() of the files that were read
     std::string command_line;
     int threads = 1;
 

@@ -6,6 +6,7 @@
 #include "studies/repeating/compare_results.hpp"
 #include "tests/studies/program.hpp"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 using namespace hilda;
@@ -104,4 +105,31 @@ TEST_CASE("hilda rerun writes beside the result, not into it")
     const Ended behind = call(in, {"rerun", "a"});
     INFO(behind.out << behind.err);
     CHECK(behind.code == 0);
+}
+
+TEST_CASE("hilda rerun names input files that have changed")
+{
+    const Scratch in;
+    const std::string rows = "t,angle\n0,0\n0.1,0.01\n0.2,0.04\n0.3,0.09\n0.4,0.16\n0.5,0.25\n";
+    write(in / "angle.csv", rows);
+    write(in / "crank.json", R"({"hilda_model": 1, "name": "crank", "end": 0.2,
+        "bodies": [{"name": "bar", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0]}],
+        "constraints": [
+            {"type": "revolute", "name": "axle", "body_i": "ground", "body_j": "bar",
+             "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]},
+            {"type": "hinge-driver", "name": "turn", "body_i": "ground", "body_j": "bar",
+             "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1],
+             "angle": {"file": "angle.csv", "column": "angle"}}]})");
+    const Ended first = call(in, {"run", "crank.json", "--fix-initial", "--output", "a"});
+    INFO(first.out << first.err);
+    REQUIRE(first.code == 0);
+    const std::string summary = read(in / "a/summary.json");
+    CHECK_THAT(summary, Contains("\"inputs\"") && Contains("\"file\": \"crank.json\"") &&
+                            Contains("angle.csv") && Contains(fmt::format("\"bytes\": {}", rows.size())));
+    CHECK(call(in, {"rerun", "a"}).code == 0);
+    write(in / "angle.csv", rows + "0.6,0.36\n");
+    const Ended changed = call(in, {"rerun", "a", "--output", "b"});
+    CHECK(changed.code == 6);
+    CHECK_THAT(changed.out, Contains("different     input") && Contains("angle.csv: has changed since"));
+    CHECK_THAT(changed.out, !Contains("input crank.json"));
 }

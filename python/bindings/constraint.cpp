@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hilda::python {
 
@@ -29,7 +30,9 @@ double rate(const lie::Motion& of) { return std::max(of.rdot.norm(), of.omega_ba
 }  // namespace
 
 PythonConstraint::PythonConstraint(int i, int j, int rows, Functions of)
-    : Constraint(i, j), ModelFunctions({of.phi, of.variation, of.nu, of.gamma}), rows(rows)
+    : Constraint(i, j),
+      ModelFunctions({std::move(of.phi), std::move(of.variation), std::move(of.nu), std::move(of.gamma)}),
+      rows(rows)
 {
     for (int k = 0; k < 4; ++k) is_none[k] = functions[static_cast<size_t>(k)].is_none();
 }

@@ -102,18 +102,19 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
                                   &general_constraint_of_row(model, x, dependent.back()));
         dependent.pop_back();
     }
-    std::string names;
+    std::vector<std::string> undetermined;
     for (const Constraint* c : dependent_contacts)
         if (c->mode_if_redundant() != Constraint::active)
             Model::set_mode(*c, x, c->mode_if_redundant());
-        else
-            names += (names.empty() ? "'" : ", '") + c->name + "'";
+        else if (undetermined.empty() || undetermined.back() != c->label())
+            undetermined.push_back(c->label());
+    std::string names;
+    for (const std::string& label : undetermined) names += (names.empty() ? "" : ", ") + label;
     if (!names.empty())
-        throw lie::NumericalFailure(
-            "contact_rank",
-            "the normal forces of these contacts are not determined, because other constraints "
-            "already prevent the motion along the normal: " +
-                names);
+        throw lie::NumericalFailure("contact_rank",
+                                    "the forces of these constraints are not determined, because other "
+                                    "constraints already prevent the same motion: " +
+                                        names);
     return dependent;
 }
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from typing import Any, Mapping, Sequence
+from typing import Any, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy import float64
@@ -210,13 +210,17 @@ def _read(data: str | os.PathLike[str] | Mapping[str, ArrayLike],
 
 def _parameter(pointer: str, start: Start) -> tuple[str, float | None, float, float, float]:
     """Pointer, start, low, high, scale"""
-    parts: list[float | None] = [start] if start is None or isinstance(start, (int, float)) else list(start)
-    if len(parts) not in (1, 3, 4):
-        raise UsageError(f"fit: {pointer} must have start, (start, low, high) or (start, low, high, scale), got {start!r}")
+    try:
+        parts = [None if part is None else float(part) for part in (list(start) if isinstance(start, Iterable) else [start])]
+        if len(parts) not in (1, 3, 4):
+            raise ValueError
+    except (TypeError, ValueError):
+        raise UsageError(f"fit: {pointer} must have start, (start, low, high) or (start, low, high, scale), "
+                         f"got {start!r}") from None
     low, high = (parts[1], parts[2]) if len(parts) > 1 else (None, None)
     scale = parts[3] if len(parts) > 3 else None
-    return (pointer, None if parts[0] is None else float(parts[0]), -math.inf if low is None else float(low),
-            math.inf if high is None else float(high), 0.0 if scale is None else float(scale))
+    return (pointer, parts[0], -math.inf if low is None else low, math.inf if high is None else high,
+            0.0 if scale is None else scale)
 
 
 def _sigma(sigma: float | Mapping[str, float] | None, columns: list[str]) -> list[float]:

@@ -79,10 +79,12 @@ private:
         if (parameter.empty()) throw io::UsageError("fit: there is no parameter to fit");
         std::vector<std::string> pointers;
         for (FitParameter& of : parameter) {
+            if (!std::isfinite(of.start))
+                lie::reject(of.pointer, "the start must be a finite number", of.start);
             if (of.scale == 0) of.scale = of.start == 0 ? 1 : std::abs(of.start);
             if (!(of.scale > 0) || !std::isfinite(of.scale))
                 lie::reject(of.pointer, "the scale must be positive and finite", of.scale);
-            if (!(of.low < of.start && of.start < of.high) || !std::isfinite(of.start))
+            if (!(of.low < of.start && of.start < of.high))
                 throw lie::InvalidInput(
                     fmt::format("{}: the start must be between the bounds {} and {}, got {}", of.pointer,
                                 of.low, of.high, of.start));
@@ -258,6 +260,7 @@ private:
             all.warnings.push_back("the errors of the parameters are unknown: " +
                                    std::string(failure.what()));
             J = MatrixXd::Zero(r.size(), p.size());
+            derivatives_are_known = false;
         }
         const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeThinU | Eigen::ComputeThinV);
         all.singular_values = svd.singularValues();
@@ -329,7 +332,9 @@ private:
             warn(fmt::format("the minimum was not reached in {}: {}{}",
                              io::counted(all.iterations, "iteration"), all.reason,
                              refusal.empty() ? "" : "; the last failure: " + refusal));
-        if (all.singular_values[0] == 0) return;  // the derivatives are unknown
+        if (!derivatives_are_known) return;
+        if (all.degrees_of_freedom == 0 && problem.sigma.empty())
+            warn("there are as many parameters as values: the standard errors are unknown without --sigma");
         for (Index k = rank; k < all.directions.cols(); ++k) {
             std::string combination;
             for (Index i = 0; i < all.directions.rows(); ++i)
@@ -378,8 +383,9 @@ private:
 
     const FitProblem& problem;
     std::vector<FitParameter> parameter;
-    VectorXd weight;      ///< 1/σ of each column
-    std::string refusal;  ///< why the last run without residuals has failed
+    VectorXd weight;                    ///< 1/σ of each column
+    bool derivatives_are_known = true;  ///< at the minimum
+    std::string refusal;                ///< why the last run without residuals has failed
     std::atomic<long> runs = 0;
 };
 

@@ -83,6 +83,8 @@ class Fits(unittest.TestCase):
                              ({"data": {"wheel.A13": EXACT}}, "no column 't'"),
                              ({"parameters": {}}, "no parameter"),
                              ({"parameters": {"/parameters/k": (1, 2)}}, "must have start"),
+                             ({"parameters": {"/parameters/k": "x"}}, "must have start.*got 'x'"),
+                             ({"parameters": {"/parameters/k": float("nan")}}, "start must be a finite number, got nan"),
                              ({"parameters": {"/bodies/0/name": None}}, "no number there"),
                              ({"sigma": {"x": 1}}, "only one of them has"),
                              ({"sigma": -1}, "must be positive"),

@@ -99,6 +99,9 @@ class Constraints(unittest.TestCase):
                                  ({"phi": lambda x: joint(x) + 1}, hilda.InvalidInput, "constraint")):
             with self.subTest(text), self.assertRaisesRegex(kind, text):
                 model(**keys).run(end=0.01)
+        repeated = model().constraint("spherical", name="pin", body_i="bar", body_j="ground", s_bar_p_i=END, s_bar_q_j=[0, 0, 0])
+        with self.assertRaisesRegex(hilda.NumericalFailure, "not determined.* same motion: constraint 'joint'$"):
+            repeated.run()
         with self.assertRaisesRegex(hilda.UsageError, "constraint 'joint': unknown keys row"):
             model(row=3)
         with self.assertRaisesRegex(hilda.UsageError, "constraint 'joint': missing key 'body_j'"):

@@ -145,6 +145,27 @@ TEST_CASE("a fit names a combination of parameters that the data do not determin
     CHECK(std::abs(result.directions(0, 2)) == Approx(std::sqrt(1. / 3)).epsilon(1e-3));
 }
 
+TEST_CASE("a fit names parameters without effect, and errors that are unknown")
+{
+    studies::FitProblem of = problem("rA-dop853", data(1e-4, 3));
+    of.parameters = {{.pointer = "/bodies/0/mass", .start = 1}};
+    const studies::FitResult none = studies::fit(of);
+    CHECK(warns(
+        none,
+        "do not determine this combination of relative changes of the parameters: 1.00 /bodies/0/mass"));
+    CHECK(std::isnan(none.parameters[0].error));
+
+    of = problem("rA-dop853", data(1e-4, 3));
+    of.data.t.resize(2);
+    of.data.values.conservativeResize(2, 1);
+    const studies::FitResult exact_fit = studies::fit(of);
+    CHECK(exact_fit.chi_squared < 1e-20);
+    CHECK(warns(exact_fit, "as many parameters as values"));
+    CHECK(std::isnan(exact_fit.parameters[0].error));
+    of.sigma = {1e-4};
+    CHECK(studies::fit(of).parameters[0].error > 0);
+}
+
 TEST_CASE("a fit leaves out missing values, and stops at bounds")
 {
     studies::FitData some = data(0, 1);

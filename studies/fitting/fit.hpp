@@ -4,7 +4,7 @@
 /// The estimate minimises χ² = Σ ((model - data) / σ)² over all values. With J = ∂(model/σ)/∂p at the
 /// minimum, the covariance of the estimate is (Jᵀ J)⁻¹, for unknown σ times χ²/(values - parameters). The
 /// error of the time steps is estimated from a run with half the step, or with a hundredth of the tolerance:
-/// its residuals r' give the bias J⁺ (r - r') of the estimate.
+/// its residuals r' give the bias J⁺ (r' - r) of the estimate.
 
 #pragma once
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import threading
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from .errors import FileError, InvalidInput, NumericalFailure, UsageError
 from .result import BodyResult, Motions
 
 Table = dict[str, NDArray[float64]]
+_one_at_a_time = threading.Lock()  # a co-simulation has the signals and the number of threads of the process
 
 
 class StoredResult(Motions):
@@ -106,7 +108,7 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
         force: overwrite a folder that is not empty.
         resume: continue the run in the folder from its last checkpoint, also to a later end.
 
-    Returns the result that was written. Other threads of Python run meanwhile. Ctrl-C writes a checkpoint, with which
+    Returns the result that was written. Other threads of Python run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which
     `resume` continues, and raises KeyboardInterrupt.
 
     Raises:
@@ -122,8 +124,13 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
             raise UsageError(f"cosim: {name} must be finite and not negative, got {value}")
     changes = [f"{pointer}={json.dumps(value)}" for pointer, value in (set or {}).items()]
     folder = os.fspath(output)
-    code = _hilda._cosim(os.fspath(file), folder, changes, end, interval, contacts, reactions, checkpoint, threads, fix_initial,
-                         force, resume)
+    if not _one_at_a_time.acquire(blocking=False):
+        raise UsageError("cosim: another thread runs a co-simulation; a process has one at a time")
+    try:
+        code = _hilda._cosim(os.fspath(file), folder, changes, end, interval, contacts, reactions, checkpoint, threads,
+                             fix_initial, force, resume)
+    finally:
+        _one_at_a_time.release()
     if code > 128:
         raise KeyboardInterrupt
     if code != 0:

@@ -420,8 +420,6 @@ def write_video(path, data, seconds):
                     print("\r" + 40 * " ", end="\r", file=sys.stderr, flush=True)
         errors = window.run("return viewer.errors")
     if encoder.returncode != 0 or errors:
-        if os.path.exists(path + ".new"):
-            os.remove(path + ".new")
         reason = "; ".join(errors) or message.decode(errors="replace").strip().replace("\n", "; ")
         raise Failed(f"view: {path}: the video was not written: {reason}")
     os.replace(path + ".new", path)
@@ -438,7 +436,11 @@ def write(arguments):
     data = scene(arguments.folder, geometry, arguments.frames)
     text = data["text"]
     if arguments.video is not None:
-        text += ", " + write_video(arguments.output, data, arguments.video)
+        try:
+            text += ", " + write_video(arguments.output, data, arguments.video)
+        finally:  # also after an interruption
+            if os.path.exists(arguments.output + ".new"):
+                os.remove(arguments.output + ".new")
     else:
         write_whole(arguments.output, page(data))
     print(f"written       {arguments.output}: {text}, {os.path.getsize(arguments.output) / 1e6:.1f} MB")

@@ -90,6 +90,17 @@ class Stored(unittest.TestCase):
         with self.assertRaisesRegex(hilda.InvalidInput, "nothing"):
             hilda.cosim(STRIKE, self.path("c"), set={"/nothing/0": 1})
 
+    def test_one_co_simulation_at_a_time(self):
+        started = threading.Thread(target=hilda.cosim, args=(STRIKE, self.path("a")), kwargs={"end": 0.05})
+        started.start()
+        while not os.path.isdir(self.path("a")):
+            pass
+        with self.assertRaisesRegex(hilda.UsageError, "another thread runs a co-simulation"):
+            hilda.cosim(STRIKE, self.path("b"))
+        started.join()
+        self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+        self.assertAlmostEqual(hilda.load(self.path("a")).t[-1], 0.05)
+
     def test_an_interrupted_co_simulation_continues(self):
         timer = threading.Timer(0.7, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()

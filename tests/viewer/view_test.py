@@ -279,6 +279,17 @@ class Pages(unittest.TestCase):
         self.assertEqual(len(images), 25)
         self.assertGreater(np.count_nonzero(abs(images[0].astype(int) - images[-1]) > 60), 3000)  # the pendulum has moved
         hilda("view", self.pendulum, "--mp4", "--seconds", "0.2")  # replaces a video
+        with open(video, "rb") as file:
+            before = file.read()
+        long = subprocess.Popen([HILDA, "view", self.pendulum, "--mp4", "--seconds", "60"], stderr=subprocess.PIPE, text=True)
+        while not os.path.exists(video + ".new"):
+            self.assertIsNone(long.poll())
+        long.send_signal(signal.SIGINT)
+        self.assertIn("interrupted", long.communicate(timeout=30)[1])
+        self.assertEqual(long.returncode, 130)
+        self.assertFalse(os.path.exists(video + ".new"))
+        with open(video, "rb") as file:
+            self.assertEqual(file.read(), before)
 
     def test_server(self):
         import urllib.error

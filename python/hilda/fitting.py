@@ -178,8 +178,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
                           values, _sigma(sigma, names), integrator, step, chosen, fix_initial, max_fit_iterations, jobs)
     result = Fit(outcome, list(parameters), t, names, values, directory)
     if not result.converged:
-        failure = NumericalFailure("not_converged", f"fit: the minimum was not reached in {result.iterations} iterations: "
-                                   f"{result.reason}")
+        reason = next(text for text in result.warnings if text.startswith("the minimum was not reached"))
+        failure = NumericalFailure("not_converged", "fit: " + reason)
         failure.fit = result
         raise failure
     return result

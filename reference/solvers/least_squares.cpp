@@ -19,21 +19,26 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool has_low(const BoundedUnknown& of) { return std::isfinite(of.low); }
-bool has_high(const BoundedUnknown& of) { return std::isfinite(of.high); }
+constexpr double least_gradient = 1e-20;  ///< of the residuals in units of their norm at the start
+
+/// Whether a bound is near enough for the transformation. One that is farther away would take the digits of
+/// the unknown; values beyond it are refused.
+bool is_near(double bound, const BoundedUnknown& of) { return std::abs(bound - of.start) < 1e6 * of.scale; }
+bool has_low(const BoundedUnknown& of) { return is_near(of.low, of); }
+bool has_high(const BoundedUnknown& of) { return is_near(of.high, of); }
 
 /// The unknown and its derivative by the free variable x; x = 0 at the start without bounds
 double bounded(const BoundedUnknown& of, double x, double& slope)
 {
     if (has_low(of) && has_high(of)) {
-        const double half = 0.5 * (of.high - of.low);
-        slope = half * std::cos(x);
-        return of.low + half * (1 + std::sin(x));
+        const double range = of.high - of.low, sine = std::sin(x);
+        slope = range * std::sin(2 * x);
+        return of.low + range * sine * sine;
     }
     if (has_low(of) || has_high(of)) {
         const double root = std::hypot(x, 1), sign = has_low(of) ? 1 : -1;
         slope = sign * of.scale * x / root;
-        return (has_low(of) ? of.low : of.high) + sign * of.scale * (root - 1);
+        return (has_low(of) ? of.low : of.high) + sign * of.scale * (x / (root + 1) * x);
     }
     slope = of.scale;
     return of.start + of.scale * x;
@@ -41,10 +46,10 @@ double bounded(const BoundedUnknown& of, double x, double& slope)
 
 double free_start(const BoundedUnknown& of)
 {
-    if (has_low(of) && has_high(of)) return std::asin(2 * (of.start - of.low) / (of.high - of.low) - 1);
+    if (has_low(of) && has_high(of)) return std::asin(std::sqrt((of.start - of.low) / (of.high - of.low)));
     if (has_low(of) || has_high(of)) {
-        const double root = 1 + std::abs(of.start - (has_low(of) ? of.low : of.high)) / of.scale;
-        return std::sqrt(root * root - 1);
+        const double distance = std::abs(of.start - (has_low(of) ? of.low : of.high)) / of.scale;
+        return std::sqrt(distance * (distance + 2));
     }
     return 0;
 }
@@ -63,6 +68,15 @@ public:
                            gsl_vector_get(x, static_cast<size_t>(k)), slope[k]);
     }
 
+    bool is_allowed() const
+    {
+        for (Eigen::Index k = 0; k < unknowns(); ++k) {
+            const BoundedUnknown& of = problem.unknowns[static_cast<size_t>(k)];
+            if (!(of.low <= p[k] && p[k] <= of.high)) return false;
+        }
+        return true;
+    }
+
     static int residuals(const gsl_vector* x, void* self, gsl_vector* f)
     {
         auto& calls = *static_cast<Calls*>(self);
@@ -70,7 +84,7 @@ public:
             calls.set(x);
             VectorXd& r = calls.last;
             r.resize(static_cast<Eigen::Index>(f->size));
-            if (calls.problem.residuals(calls.p, r) && r.allFinite()) {
+            if (calls.is_allowed() && calls.problem.residuals(calls.p, r) && r.allFinite()) {
                 calls.largest = std::max(calls.largest, r.norm());
                 calls.last_p = calls.p;
             } else {  // the step is refused: this sum of squares is far above any other
@@ -78,7 +92,8 @@ public:
                 ++calls.refused;
                 calls.last_p.resize(0);
             }
-            for (Eigen::Index k = 0; k < r.size(); ++k) gsl_vector_set(f, static_cast<size_t>(k), r[k]);
+            for (Eigen::Index k = 0; k < r.size(); ++k)
+                gsl_vector_set(f, static_cast<size_t>(k), r[k] / calls.unit);
         });
     }
 
@@ -98,7 +113,7 @@ public:
             for (Eigen::Index i = 0; i < J.rows(); ++i)
                 for (Eigen::Index k = 0; k < J.cols(); ++k)
                     gsl_matrix_set(of, static_cast<size_t>(i), static_cast<size_t>(k),
-                                   J(i, k) * calls.slope[k]);
+                                   J(i, k) * calls.slope[k] / calls.unit);
         });
     }
 
@@ -106,6 +121,8 @@ public:
     VectorXd slope, p;
     VectorXd last_p, last;  ///< the last unknowns and their residuals
     double largest = 0;
+    /// GSL gets the residuals divided by their norm at the start: its tests are not free of their scale.
+    double unit = 1;
     int refused = 0;  ///< number of trial steps without residuals
     std::exception_ptr error;
 
@@ -156,7 +173,8 @@ LeastSquaresSolution minimise(const LeastSquaresProblem& problem)
                                     "the residuals cannot be computed at the start of the unknowns");
     if (r.size() < start.size())
         lie::reject("least squares", "there must be as many residuals as unknowns or more", r.size());
-    calls.largest = std::max(1., r.norm());
+    if (r.norm() > 0) calls.unit = r.norm();
+    calls.largest = calls.unit;
 
     const auto n = static_cast<size_t>(r.size()), unknowns = static_cast<size_t>(start.size());
     gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
@@ -191,9 +209,10 @@ LeastSquaresSolution minimise(const LeastSquaresProblem& problem)
         status = gsl_multifit_nlinear_iterate(work.get());
         rethrow();
         ++solution.iterations;
-        const double sum = sum_of_squares(gsl_multifit_nlinear_residual(work.get()));
+        const double sum =
+            calls.unit * calls.unit * sum_of_squares(gsl_multifit_nlinear_residual(work.get()));
         problem.progress(solution.iterations, sum);
-        gsl_multifit_nlinear_test(problem.tolerance, 1e-14, 0, &info, work.get());
+        gsl_multifit_nlinear_test(problem.tolerance, least_gradient, 0, &info, work.get());
         // Refused trial steps leave a small trust region, in which each step is small. It starts again, as
         // long as that reduces the sum of squares.
         if (calls.refused == 0 || info == 2 || (info == 0 && status == GSL_SUCCESS)) continue;
@@ -220,7 +239,8 @@ LeastSquaresSolution minimise(const LeastSquaresProblem& problem)
     solution.p = calls.p;
     solution.residuals.resize(r.size());
     const gsl_vector* const f = gsl_multifit_nlinear_residual(work.get());
-    for (size_t k = 0; k < n; ++k) solution.residuals[static_cast<Eigen::Index>(k)] = gsl_vector_get(f, k);
+    for (size_t k = 0; k < n; ++k)
+        solution.residuals[static_cast<Eigen::Index>(k)] = calls.unit * gsl_vector_get(f, k);
     return solution;
 }
 

@@ -32,6 +32,8 @@ void FitData::check() const
     if (!(t.back() > 0)) refuse("t must be positive in the last row");
     for (Eigen::Index c = 0; c < values.cols(); ++c) {
         const std::string& name = columns[static_cast<size_t>(c)];
+        if (std::count(columns.begin(), columns.end(), name) > 1)
+            refuse("the column " + name + " is given twice");
         for (Eigen::Index k = 0; k < values.rows(); ++k)
             if (std::isinf(values(k, c))) refuse(fmt::format("{} is infinite in row {}", name, k + 1));
         if (values.col(c).array().isNaN().all()) refuse("the column " + name + " has no value");

@@ -167,6 +167,9 @@ private:
         } catch (const lie::InvalidInput& invalid) {  // values that the model does not allow: a negative mass
             if (is_start) throw;
             refusal = invalid.what();
+        } catch (const io::UsageError& unstable) {  // a step above the stability limit with these values
+            if (is_start) throw;
+            refusal = unstable.what();
         }
         return false;
     }
@@ -181,6 +184,7 @@ private:
             throw;
         } catch (const lie::NumericalFailure&) {
         } catch (const lie::InvalidInput&) {
+        } catch (const io::UsageError&) {
         }
         return false;
     }

@@ -72,12 +72,14 @@ double interval_of(const std::vector<double>& t)
     for (size_t k = 0; k < t.size(); ++k) d.push_back(k == 0 ? t[0] : t[k] - t[k - 1]);
     if (d.front() == 0) d.erase(d.begin());
     const double least = *std::min_element(d.begin(), d.end());
-    const bool are_multiples = std::all_of(t.begin(), t.end(), [&](double at) {
-        return std::abs(at / least - std::round(at / least)) <= same * std::max(1., at / least);
-    });
+    const double most = 100. * static_cast<double>(t.size()) + 1000;  // nodes
+    const bool are_multiples =
+        t.back() / least <= most && std::all_of(t.begin(), t.end(), [&](double at) {
+            return std::abs(at / least - std::round(at / least)) <= same * std::max(1., at / least);
+        });
     if (are_multiples) return least;
     std::nth_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2), d.end());
-    return 0.25 * d[d.size() / 2];
+    return std::max(0.25 * d[d.size() / 2], t.back() / most);
 }
 
 Samples sample(dae::Description& model, const std::vector<std::string>& columns, const std::vector<double>& t,
@@ -86,7 +88,9 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
     const lie::Scheme& scheme = *options.scheme;
     dae::start(model, {.fix_initial = options.fix_initial});
     const dae::Model& system = *model.model;
-    const double h = scheme.adaptive ? interval_of(t) : options.step;
+    // The last instant is a node: a prescribed motion may end there.
+    const double wanted = scheme.adaptive ? interval_of(t) : options.step;
+    const double h = t.back() / std::ceil(t.back() / wanted * (1 - same));
     lie::TimeGrid grid = lie::TimeGrid::over(t.back(), h);
     grid.interval = std::max(1L, grid.steps);
     check_run(system, model.x, scheme, grid, false);

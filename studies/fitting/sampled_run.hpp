@@ -21,7 +21,7 @@ namespace hilda::studies {
 /// How a model is integrated
 struct SampledRunOptions {
     const lie::Scheme* scheme = nullptr;
-    double step = 1e-3;  ///< [s], of a scheme with a fixed step
+    double step = 1e-3;  ///< [s], of a scheme with a fixed step; reduced so that the end is a node
     lie::Settings settings = {};
     bool fix_initial = false;  ///< project inconsistent initial data onto the constraints
 };
@@ -35,7 +35,7 @@ struct Samples {
 };
 
 /// Nodes [s] of a run of a scheme with adaptive steps: the interval of instants with equal intervals from 0;
-/// otherwise a quarter of their median interval
+/// otherwise a quarter of their median interval, with a limit for instants that are close to each other
 double interval_of(const std::vector<double>& t);
 
 /// Integrates the model from 0 to the last instant. Between nodes the columns are interpolated by polynomials

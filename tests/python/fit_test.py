@@ -61,6 +61,33 @@ class Fits(unittest.TestCase):
         self.assertTrue((known.interval[:, 0] < known.value).all() and (known.value < known.interval[:, 1]).all())
         self.assertEqual([row["parameter"] for row in known.rows()], list(BOTH))
 
+    def test_the_scale_of_the_data_has_no_effect(self):
+        noise = 1e-5 * np.random.default_rng(3).standard_normal(len(T))
+        reference = hilda.fit(WHEEL, {"t": T, "wheel.A13": EXACT + noise}, BOTH)
+        for scale in (1e-9, 1e-5, 1e9):
+            model = {**WHEEL, "outputs": [{"type": "expression", "name": "y", "value": f"{scale}*wheel.A13"}]}
+            result = hilda.fit(model, {"t": T, "y": scale * (EXACT + noise)}, BOTH)
+            np.testing.assert_allclose(result.value, reference.value, rtol=1e-7)
+            np.testing.assert_allclose(result.error, reference.error, rtol=1e-3)
+        large = hilda.fit(WHEEL, {"t": T, "wheel.A13": EXACT + noise}, BOTH, sigma=1e9)
+        np.testing.assert_allclose(large.value, reference.value, rtol=1e-7)
+
+    def test_far_bounds(self):
+        data = {"t": T, "wheel.A13": EXACT}
+        for high in (1e3, 1e8, 1e15, 1e300):
+            result = hilda.fit(WHEEL, data, {"/parameters/k": (10, 0, high), "/parameters/c": (0.2, 0, high)})
+            np.testing.assert_allclose(result.value, [STIFFNESS, DAMPING], rtol=1e-7)
+        result = hilda.fit(WHEEL, data, {"/parameters/k": (2e-3, 1e-6, 1e6), "/parameters/c": (1e-6, 0, 1e4)})
+        np.testing.assert_allclose(result.value, [STIFFNESS, DAMPING], rtol=1e-7)
+
+    def test_close_instants(self):
+        keep = np.array([0.1, 0.100000001, 0.5, 1.0])
+        exact = np.sin(SPEED / OMEGA * np.exp(-DECAY * keep) * np.sin(OMEGA * keep))
+        result = hilda.fit(WHEEL, {"t": keep, "wheel.A13": exact}, BOTH)
+        np.testing.assert_allclose(result.value, [STIFFNESS, DAMPING], rtol=1e-3)
+        with self.assertRaisesRegex(hilda.InvalidInput, "the column wheel.A13 is given twice"):
+            hilda.fit(WHEEL, {"t": T, "wheel.A13": EXACT}, BOTH, columns=["wheel.A13", "wheel.A13"])
+
     def test_a_file(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "data.csv")
@@ -73,7 +100,7 @@ class Fits(unittest.TestCase):
 
     def test_failures(self):
         data = {"t": T, "wheel.A13": EXACT}
-        with self.assertRaisesRegex(hilda.NumericalFailure, "minimum was not reached in 1 iterations") as caught:
+        with self.assertRaisesRegex(hilda.NumericalFailure, "minimum was not reached in 1 iteration:") as caught:
             hilda.fit(WHEEL, data, BOTH, max_fit_iterations=1)
         self.assertEqual(caught.exception.status, "not_converged")
         self.assertEqual(caught.exception.fit.iterations, 1)

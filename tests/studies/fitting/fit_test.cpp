@@ -197,6 +197,29 @@ TEST_CASE("a fit avoids values with which the model is invalid")
     CHECK(result.parameters[0].value > 0);
 }
 
+TEST_CASE("the nodes of a sampled run follow the instants, and end with the last one")
+{
+    CHECK(studies::interval_of({0.1, 0.2, 0.4}) == Approx(0.1));
+    CHECK(studies::interval_of({0, 0.2, 0.4}) == Approx(0.2));
+    CHECK(studies::interval_of({0.1, 0.1 + 1e-9, 0.5, 1}) > 1e-4);  // a limit for close instants
+    // Samples of a motion end at 1 s: a later node has no motion.
+    const char* const crank = R"({"hilda_model": 1, "name": "crank",
+      "bodies": [{"name": "bar", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0]}],
+      "constraints": [
+        {"type": "revolute", "name": "axle", "body_i": "ground", "body_j": "bar",
+         "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]},
+        {"type": "hinge-driver", "name": "turn", "body_i": "ground", "body_j": "bar", "axis_bar_i": [0, 0, 1],
+         "axis_bar_j": [0, 0, 1], "angle": {"t": [0, 0.2, 0.4, 0.6, 0.8, 1], "f": [0, 0.04, 0.16, 0.36, 0.64, 1]}}]})";
+    for (const char* scheme : {"rA-dop853", "rA-rkmk-4"}) {
+        dae::Description model = dae::read_model(crank, "crank.json");
+        studies::SampledRunOptions options{.scheme = &lie::scheme(scheme), .step = 3e-3, .fix_initial = true};
+        if (std::string(scheme) == "rA-dop853") options.scheme = &options.scheme->with_adaptive_steps();
+        const studies::Samples samples =
+            studies::sample(model, {"bar.A11"}, {0.33, 0.71, 0.97, 1.0}, options);
+        CHECK(samples.values(3, 0) == Approx(std::cos(1.)).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("invalid fits are refused")
 {
     const auto refuse = [](const auto& change, const std::string& expected) {

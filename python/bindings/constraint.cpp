@@ -1,20 +1,63 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/bindings/constraint.hpp"
 
+#include "lie/check.hpp"
 #include "lie/so3.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hilda::python {
 
 namespace {
 
-constexpr double first = 6e-6;   // of a first difference of second order: h² and 1e-16/h
-constexpr double second = 2e-3;  // of a second difference of fourth order: h⁴ and 1e-16/h²
+constexpr double displacement =
+    1.2e-5;                          // [m, rad], of poses; the result is extrapolated from it and its half
+constexpr double first_step = 2e-3;  // [s, m or rad], the largest of differences along a motion
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, dae::Constraint::max_position_rows, 1>;
+
+/// The first or second derivative of f at 0, by differences of fourth order. The step begins with h and is
+/// halved while that reduces the difference of two results, which is the estimate of the error: the motion
+/// may be curved within a much smaller length than h.
+///
+/// Throws lie::NumericalFailure "differences" if the estimate exceeds `most` relative to the derivative.
+template <class Function>
+Rows derivative(const Function& f, int order, double h, const std::string& what)
+{
+    constexpr int halvings = 14;
+    constexpr double enough = 1e-11, most = 1e-5, least = 1e-7;
+    const Rows zero = order == 2 ? Rows(f(0)) : Rows();
+    Rows far_plus = f(2 * h), far_minus = f(-2 * h), best;
+    double error = std::numeric_limits<double>::infinity(), size = 0;
+    Rows before;
+    for (int k = 0; k < halvings; ++k, h *= 0.5) {
+        const Rows plus = f(h), minus = f(-h);
+        Rows now = order == 1
+                       ? Rows((8 * (plus - minus) - (far_plus - far_minus)) / (12 * h))
+                       : Rows((16 * (plus + minus) - (far_plus + far_minus) - 30 * zero) / (12 * h * h));
+        far_plus = plus, far_minus = minus;
+        if (k > 0) {
+            const double change = (now - before).template lpNorm<Eigen::Infinity>();
+            if (change >= error && error <= most * size + least) break;  // rounding errors
+            if (change < error) {
+                error = change, best = now;
+                size = now.template lpNorm<Eigen::Infinity>();
+            }
+            if (error <= enough * size) break;
+        }
+        before = std::move(now);
+    }
+    if (!(error <= most * size + least))
+        throw lie::NumericalFailure(
+            "differences",
+            fmt::format("{} by differences has an error of {:.1e}; give the function", what, error));
+    return best;
+}
 
 /// The motion after a time s with constant velocities
 lie::Motion after(const lie::Motion& from, double s)
@@ -77,23 +120,26 @@ void PythonConstraint::variation(const Arguments& x, Derivatives& out) const
                 body.A = body.A * lie::exp(by * lie::Vec3::Unit(c % 3));
             return phi_at({bi, bj, x.t}, 0);
         };
-        (c < 6 ? out.C_i : out.C_j).col(c % 6) = (displaced(first) - displaced(-first)) / (2 * first);
+        const auto difference = [&](double d) { return Rows((displaced(d) - displaced(-d)) / (2 * d)); };
+        const Rows fine = difference(0.5 * displacement), coarse = difference(displacement);
+        (c < 6 ? out.C_i : out.C_j).col(c % 6) = (4 * fine - coarse) / 3;
     }
 }
 
 void PythonConstraint::nu(const Arguments& x, double* out) const
 {
     if (has(nu_)) return call(nu_, "nu", x, out);
-    const double h = first * std::max(1., std::abs(x.t));
-    const double before = x.t - h, later = x.t + h;
-    Eigen::Map<Eigen::VectorXd>(out, rows) =
-        (phi_at({x.bi, x.bj, before}, 0) - phi_at({x.bi, x.bj, later}, 0)) / (later - before);
+    Eigen::Map<Eigen::VectorXd>(out, rows) = -derivative(
+        [&](double s) {
+            return phi_at({x.bi, x.bj, x.t + s}, 0);
+        },
+        1, first_step, "nu of " + label());
 }
 
 /// Φ after a time s with constant velocities
-PythonConstraint::Rows PythonConstraint::phi_at(const Arguments& x, double s) const
+PythonConstraint::PositionRows PythonConstraint::phi_at(const Arguments& x, double s) const
 {
-    Rows all(rows);
+    PositionRows all(rows);
     if (s == 0) return phi(x, all.data()), all;
     const lie::Motion bi = after(x.bi, s), bj = after(x.bj, s);
     phi({bi, bj, x.t + s}, all.data());
@@ -101,14 +147,14 @@ PythonConstraint::Rows PythonConstraint::phi_at(const Arguments& x, double s) co
 }
 
 /// dΦ/ds = C v - ν after a time s with constant velocities
-PythonConstraint::Rows PythonConstraint::rate_at(const Arguments& x, double s) const
+PythonConstraint::PositionRows PythonConstraint::rate_at(const Arguments& x, double s) const
 {
     const lie::Motion bi = after(x.bi, s), bj = after(x.bj, s);
     const Arguments at{bi, bj, x.t + s};
     Derivatives d;
     d.set_zero(*this);
     variation(at, d);
-    Rows of_time(rows);
+    PositionRows of_time(rows);
     nu(at, of_time.data());
     Eigen::Matrix<double, 6, 1> v_i, v_j;
     v_i << bi.rdot, bi.omega_bar;
@@ -119,14 +165,10 @@ PythonConstraint::Rows PythonConstraint::rate_at(const Arguments& x, double s) c
 void PythonConstraint::gamma(const Arguments& x, double* out) const
 {
     if (has(gamma_)) return call(gamma_, "gamma", x, out);
-    Eigen::Map<Eigen::VectorXd> to(out, rows);
-    const double h = second / std::max({1., rate(x.bi), rate(x.bj)});
-    if (has(variation_)) {
-        to = -(8 * (rate_at(x, h) - rate_at(x, -h)) - (rate_at(x, 2 * h) - rate_at(x, -2 * h))) / (12 * h);
-        return;
-    }
-    to = -(16 * (phi_at(x, h) + phi_at(x, -h)) - (phi_at(x, 2 * h) + phi_at(x, -2 * h)) - 30 * phi_at(x, 0)) /
-         (12 * h * h);
+    const double h = first_step / std::max({1., rate(x.bi), rate(x.bj)});
+    Eigen::Map<Eigen::VectorXd>(out, rows) =
+        has(variation_) ? -derivative([&](double s) { return rate_at(x, s); }, 1, h, "gamma of " + label())
+                        : -derivative([&](double s) { return phi_at(x, s); }, 2, h, "gamma of " + label());
 }
 
 }  // namespace hilda::python

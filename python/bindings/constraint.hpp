@@ -17,9 +17,11 @@ namespace hilda::python {
 ///     nu          -∂Φ/∂t, shape (rows,)
 ///     gamma       γ = C v̇ of Φ̈ = 0, shape (rows,)
 ///
-/// They are then central differences: of Φ by poses and time with an error of about 1e-10, and γ = -d²Φ/ds²
-/// along the motion with the present velocities, of fourth order, with an error of about 1e-9; with
-/// `variation`, γ is the first derivative of C v - ν.
+/// They are then differences of fourth order: those of poses with steps of about 1e-5, which resolves lengths
+/// of a millimetre and more with an error of 1e-9; ν in time; and γ = -d²Φ/ds² along the motion with the
+/// present velocities, or with `variation` the first derivative of C v - ν. The steps of the last two are
+/// reduced until the error is least. lie::NumericalFailure "differences" if its estimate is above 1e-5 of the
+/// result.
 class PythonConstraint final : public dae::Constraint, public ModelFunctions {
 public:
     struct Functions {
@@ -35,13 +37,13 @@ public:
 
 private:
     enum Which { phi_, variation_, nu_, gamma_ };
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_position_rows, 1>;
+    using PositionRows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_position_rows, 1>;
     struct Place;
 
     bool has(Which which) const { return !is_none[which]; }
     void call(Which which, const char* what, const Arguments& x, double* out) const;
-    Rows phi_at(const Arguments& x, double s) const;
-    Rows rate_at(const Arguments& x, double s) const;
+    PositionRows phi_at(const Arguments& x, double s) const;
+    PositionRows rate_at(const Arguments& x, double s) const;
 
     const int rows;
     bool is_none[4];

@@ -97,10 +97,11 @@ void collect_functions(PyHeapTypeObject* heap_type)
     };
 }
 
-py::dict report(const dae::StartReport& start)
+py::dict report(const ModelObject& model)
 {
+    const dae::StartReport& start = model.start;
     py::dict all;
-    all["rows"] = start.rows;
+    all["rows"] = model.description.model->rows();
     all["rank"] = start.rank;
     all["degrees_of_freedom"] = start.degrees_of_freedom;
     all["dropped"] = start.dropped;
@@ -141,7 +142,7 @@ void define_model(py::module_& m)
         .def_property_readonly("warnings",
                                [](const ModelObject& model) { return model.description.warnings; })
         .def_property_readonly("bodies", &names_of_bodies)
-        .def_property_readonly("report", [](const ModelObject& model) { return report(model.start); })
+        .def_property_readonly("report", [](const ModelObject& model) { return report(model); })
         .def("state", [](const ModelObject& model) {
             return std::make_shared<StateObject>(StateObject{model.description.x, false});
         });

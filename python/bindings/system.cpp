@@ -157,14 +157,15 @@ Returns v, shape (bodies, 6), and lambda, shape (rows,).)");
 
 M v' + C^T lambda = (F, n_bar - omega_bar x J omega_bar),   Phi(r, A, t) = 0,   v = (rdot, omega_bar))")
         .def(py::init([](const ModelPointer& model) {
-            const lie::Rows& C = model->description.model->pattern();
-            if (C.algebraic_variables() > 0 || C.velocity_rows > 0 || !C.unilateral.empty() ||
-                model->description.model->keeps_redundant_rows())
-                throw io::InvalidInput(
-                    "integrators in Python take models without contacts as constraints, "
-                    "rolling without slip and redundant rows");
-            return std::make_shared<SystemObject>(model);
-        }))
+                 const lie::Rows& C = model->description.model->pattern();
+                 if (C.algebraic_variables() > 0 || C.velocity_rows > 0 || !C.unilateral.empty() ||
+                     model->description.model->keeps_redundant_rows())
+                     throw io::InvalidInput(
+                         "integrators in Python take models without contacts as constraints, "
+                         "rolling without slip and redundant rows");
+                 return std::make_shared<SystemObject>(model);
+             }),
+             py::keep_alive<1, 2>())  // the garbage collector must not clear functions that this object calls
         .def_property_readonly("bodies", &bodies, "Number of bodies")
         .def_property_readonly(
             "rows", [](const SystemObject& s) { return s.system.rows(); }, "Number of constraint rows")

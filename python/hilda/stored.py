@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from . import _hilda
 from .errors import FileError, InvalidInput, NumericalFailure, UsageError
+from .model import _json
 from .result import BodyResult, Motions
 
 Table = dict[str, NDArray[float64]]
@@ -117,12 +118,14 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
     """
     if force and resume:
         raise UsageError("cosim: force and resume exclude each other")
+    if not os.fspath(output):
+        raise UsageError("cosim: output must be the path of a folder, got an empty text")
     if not 1 <= threads <= 1024:
         raise UsageError(f"cosim: threads must be from 1 to 1024, got {threads}")
     for name, value in (("end", end), ("interval", interval), ("checkpoint", checkpoint)):
         if value is not None and not (value >= 0 and np.isfinite(value)):
             raise UsageError(f"cosim: {name} must be finite and not negative, got {value}")
-    changes = [f"{pointer}={json.dumps(value)}" for pointer, value in (set or {}).items()]
+    changes = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
     folder = os.fspath(output)
     if not _one_at_a_time.acquire(blocking=False):
         raise UsageError("cosim: another thread runs a co-simulation; a process has one at a time")
@@ -166,7 +169,7 @@ def _read_tables(folder: str) -> dict[str, Table]:
         try:
             with h5py.File(path) as file:
                 for name in file:
-                    if name not in tables:
+                    if name not in tables and hasattr(file[name], "items"):
                         tables[name] = {key: np.asarray(values, dtype=float) for key, values in file[name].items()}
         except OSError as error:
             raise InvalidInput(f"{path}: cannot be read: {error}") from None

@@ -177,7 +177,7 @@ class World:
                 self._is_ended = True
             if is_over:
                 break
-        if self.steps == last:
+        if self.steps == last and self.t > self.end - 0.5 * h:  # a shorter run may be continued
             self._core.end_run()
         return self
 

@@ -212,7 +212,12 @@ void add_view_options(CLI::App& c, ViewOptions& to)
     c.add_flag("--mp4", to.video, "write a video, by Chromium and ffmpeg, instead of the page");
     value(c, "--seconds", "S",
           "duration of the video; default: that of the run if it is from 3 to 30 s, otherwise 10",
-          assign(to.seconds, positive_number));
+          assign(to.seconds, [](const std::string& option, const std::string& text) {
+              constexpr double most = 3600;
+              const double seconds = positive_number(option, text);
+              if (seconds > most) io::refuse_option(option, "must be at most 3600 s", text);
+              return seconds;
+          }));
     c.add_flag("--serve", to.serve,
                "serve the page on 127.0.0.1 until Ctrl-C; it follows a run that goes on");
     value(c, "--port", "N", "port of --serve (default 8000; 0: any free one)",

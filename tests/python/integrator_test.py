@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Integrators in Python: their order, the equations of a system, errors."""
 
+import gc
 import unittest
 
 import numpy as np
@@ -176,6 +177,42 @@ class Integrators(unittest.TestCase):
         np.testing.assert_allclose(A @ theta[..., None], theta[..., None], atol=1e-15)
         np.testing.assert_allclose(so3.exp([0, 0, np.pi / 2]) @ [1, 0, 0], [0, 1, 0], atol=1e-15)
         np.testing.assert_allclose(so3.tilde(theta[0]) @ [1, 2, 3], np.cross(theta[0], [1, 2, 3]))
+
+
+class Lifetime(unittest.TestCase):
+    def test_a_system_keeps_the_functions_of_its_model(self):
+        """A force that refers to its model is part of a cycle, which the system still uses."""
+        kept = []
+
+        class Stored(hilda.Integrator):
+            order = 1
+
+            def __init__(self, system):
+                super().__init__(system)
+                kept.append(system)
+
+            def step(self, x, h):
+                x.t += h
+                return 0
+
+        def point():
+            model = hilda.Model(name="point", gravity=[0, 0, 0], end=0.002)
+            return model.body("point", mass=1, inertia=[1, 1, 1], r=[0, 0, 0], r_dot=[1, 0, 0])
+
+        def cycle():
+            model = point()
+
+            def drag(x):
+                return -0.1 * len(repr(model)[:1]) * x.rdot
+
+            model.force(drag)
+            model.run(Stored, step=1e-3)
+
+        state = point().start.copy()
+        cycle()
+        gc.collect()
+        F, n_bar = kept[0].loads(state)
+        np.testing.assert_allclose(F, [[-0.1, 0, 0]])
 
 
 if __name__ == "__main__":

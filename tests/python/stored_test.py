@@ -85,6 +85,8 @@ class Stored(unittest.TestCase):
                            ({"force": True, "resume": True}, "exclude each other")):
             with self.assertRaisesRegex(hilda.UsageError, text):
                 hilda.cosim(STRIKE, self.path("c"), **keys)
+        with self.assertRaisesRegex(hilda.UsageError, "path of a folder, got an empty text"):
+            hilda.cosim(STRIKE, "")
         with self.assertRaisesRegex((hilda.InvalidInput, hilda.FileError), "none.json"):
             hilda.cosim(self.path("none.json"), self.path("c"))
         with self.assertRaisesRegex(hilda.InvalidInput, "nothing"):

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 namespace hilda::studies {
 
@@ -17,7 +18,7 @@ bool moves_with_time(const dae::Model& model, lie::State x, Eigen::VectorXd& nu)
         x.t += dt;
         try {
             model.nu(x, nu);
-        } catch (const lie::NumericalFailure&) {
+        } catch (const std::exception&) {  // of a function of the user as well
             return true;
         }
         if (nu.size() > 0 && (nu.array() != 0).any()) return true;

@@ -9,14 +9,10 @@
 
 namespace hilda::granular {
 
-namespace {
-
 double stability_limit(const World::StepLimits& of)
 {
     return std::min(of.rayleigh, 2 / std::numbers::pi * of.collision);
 }
-
-}  // namespace
 
 void check_step(const Case& c, const StepFinding& above, const StepFinding& coarse)
 {

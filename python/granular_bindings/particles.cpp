@@ -2,7 +2,9 @@
 #include "python/granular_bindings/particles.hpp"
 
 #include "granular/insertion/obstacles.hpp"
+#include "granular/stages/step_check.hpp"
 #include "io/error.hpp"
+#include "io/message.hpp"
 #include "io/nearest.hpp"
 #include "python/granular_bindings/arrays.hpp"
 
@@ -182,6 +184,10 @@ std::uint32_t add(WorldObject& o, const NewParticles& given)
     const std::uint32_t first = o.world().add(all);
     if (groups != nullptr && !all.empty()) groups->add(first, group);
     o.insert();
+    if (const double limit = stability_limit(o.world().step_limits()); o.of().h > limit)
+        o.warnings.push_back(io::formatted(
+            "World.add: the step %g s is above the stability limit %.3g s with the particles that were added",
+            o.of().h, limit));
     return first;
 }
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,10 @@ def numbers(where: str, value: Any, rows: int | None, width: int | None = None) 
 
 def ids_of(where: str, value: Any) -> NDArray[uint32]:
     """Ids of particles: a contiguous array of the shape (n,). One number is one id."""
-    given = np.asarray(value)
+    try:
+        given = np.asarray(value)
+    except ValueError as error:  # lists of different lengths
+        raise InvalidInput(f"{where}: ids must be an array of whole numbers: {error}") from None
     if given.size == 0:
         return np.empty(0, dtype=uint32)
     if given.dtype.kind not in "iu":
@@ -49,4 +53,18 @@ def ids_of(where: str, value: Any) -> NDArray[uint32]:
     wrong = given[(given < 0) | (given > np.iinfo(uint32).max)]
     if wrong.size > 0:
         raise InvalidInput(f"{where}: no particle has this id, got {wrong[0]}")
+    numbers_of, counts = np.unique(given, return_counts=True)
+    if (counts > 1).any():
+        raise InvalidInput(f"{where}: an id is given twice, {numbers_of[counts > 1][0]}")
     return np.ascontiguousarray(given, dtype=uint32)
+
+
+def whole(where: str, value: Any, low: int, high: int) -> int:
+    """A whole number from low to high."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InvalidInput(f"{where} must be a whole number from {low} to {high}, got {value!r}") from None
+    if not low <= number <= high:
+        raise InvalidInput(f"{where} must be a whole number from {low} to {high}, got {number}")
+    return number

@@ -13,7 +13,7 @@ from numpy import bool_, float64, int32, int64, uint32
 from numpy.typing import ArrayLike, NDArray
 
 from . import _granular
-from .arrays import ids_of, numbers
+from .arrays import ids_of, numbers, whole
 from .boundary import Boundary
 from .errors import InvalidInput, UsageError
 from .results import Contacts, Removed, Totals
@@ -53,10 +53,8 @@ class World:
     def __init__(self, case: Source, *, set: Mapping[str, Any] | None = None, folder: str | os.PathLike[str] = "",
                  threads: int = 1, device: str = "cpu", seed: int | None = None, force: bool = False,
                  allow_paths: bool = False, watch: bool = True) -> None:
-        if not 1 <= threads <= 1024:
-            raise InvalidInput(f"World: threads must be a whole number from 1 to 1024, got {threads}")
-        if seed is not None and not 0 <= seed < 2**53:
-            raise InvalidInput(f"World: seed must be a whole number from 0 to 2^53 - 1, got {seed}")
+        threads = whole("World: threads", threads, 1, 1024)
+        seed = None if seed is None else whole("World: seed", seed, 0, 2**53 - 1)
         base = os.fspath(folder)
         if isinstance(case, dict):
             text, file, below = json.dumps(_json(case), indent=1), "case", base
@@ -126,7 +124,7 @@ class World:
         """
         if operator.index(n) < 0:
             raise InvalidInput(f"World.step: n must not be negative, got {n}")
-        return self._core.advance(operator.index(n), self._before if self._functions else None)
+        return self._core.advance(min(operator.index(n), 2**62), self._before if self._functions else None)
 
     def before_each_step(self, function: Function) -> Function:
         """Calls function(world) before each step, at the time of its beginning. Returns the function.
@@ -321,14 +319,20 @@ class World:
             replica: number of the replica.
             group: name of a group of the case; default: none.
 
-        Overlaps with other particles and boundaries may be at most 5 % of the smaller radius. The particles are all
+        A step above the stability limit with these particles is a warning. Overlaps with other particles and boundaries
+        may be at most 5 % of the smaller radius. The particles are all
         added, or none: an error leaves the world unchanged.
         """
         where = "World.add"
-        rows = 1 if np.ndim(r) == 1 else len(np.asarray(r))
+        try:
+            shape = np.shape(r)
+        except ValueError as error:  # lists of different lengths
+            raise InvalidInput(f"{where}: r: must be an array of numbers: {error}") from None
+        rows = shape[0] if len(shape) == 2 else 1
         index = self._material(material)
-        if not 0 <= replica < 2**16:
-            raise InvalidInput(f"{where}: replica must be from 0 to 65535, got {replica}")
+        replica = whole(f"{where}: replica", replica, 0, 2**16 - 1)
+        if not isinstance(group, str):
+            raise InvalidInput(f"{where}: group must be a name, got {group!r}")
         first = self._core.add(numbers(f"{where}: r", r, rows, 3), numbers(f"{where}: radius", radius, rows),
                                numbers(f"{where}: v", v, rows, 3), numbers(f"{where}: omega", omega, rows, 3),
                                numbers(f"{where}: mass", mass, rows), numbers(f"{where}: e", e, rows, 4),
@@ -339,9 +343,9 @@ class World:
         names = self.materials
         if isinstance(material, str) and material in names:
             return names.index(material)
-        if isinstance(material, str) or not 0 <= material < len(names):
+        if isinstance(material, str):
             raise InvalidInput(f"World.add: no material {material!r}; the materials are {', '.join(names)}")
-        return int(material)
+        return whole("World.add: the number of the material", material, 0, len(names) - 1)
 
     def remove(self, ids: ArrayLike) -> None:
         """Removes particles with these ids; shape (n,), or one id. A clump is removed as a whole."""
@@ -373,10 +377,7 @@ class World:
         """A boundary, by its name or number."""
         if isinstance(which, str):
             return Boundary(self._core, self._core.number_of(which))
-        number = len(self.boundaries)
-        if not 0 <= which < number:
-            raise InvalidInput(f"World.boundary: the number must be from 0 to {number - 1}, got {which}")
-        return Boundary(self._core, int(which))
+        return Boundary(self._core, whole("World.boundary: the number", which, 0, len(self.boundaries) - 1))
 
     @property
     def gravity(self) -> NDArray[float64]:

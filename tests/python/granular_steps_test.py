@@ -124,6 +124,12 @@ class Runs(unittest.TestCase):
             hilda_granular.run(grains(), observer=fail)
         self.assertEqual(raised.exception.__notes__, ["in the observer at t = 0 s"])
 
+    def test_a_run_in_parts_has_no_warning_about_its_end(self):
+        world = World("settle_push_load")
+        before = list(world.warnings)
+        world.run(10 * world.h).run(20 * world.h)
+        self.assertEqual(world.warnings, before)
+
     def test_wrong_times(self):
         world = World(grains()).run(1e-3)
         for keys, text in (({"end": -1}, "World.run: end must be positive, got -1"),

@@ -143,6 +143,14 @@ class Particles(unittest.TestCase):
             world.set_velocity(np.array([4, 9], dtype=np.int64), v)
             np.testing.assert_array_equal(world.v[[4, 9]], expected)
 
+    def test_a_step_above_the_limit_of_added_particles_is_a_warning(self):
+        world = World(box())
+        before = list(world.warnings)
+        world.add([0, 0, 0.03], 1e-3)
+        self.assertEqual(world.warnings, before)
+        world.add([0, 0, 0.04], 1e-3, mass=1e-12)
+        self.assertRegex(world.warnings[-1], "World.add: the step .* s is above the stability limit .* with the particles that were added")
+
     def test_wrong_arrays(self):
         world = World(box())
         state = world.v
@@ -153,6 +161,7 @@ class Particles(unittest.TestCase):
                 ([0], "abc", "must be an array of numbers, got str"),
                 ([0], [1, 2j, 0], "must be an array of numbers, got list"),
                 ([0], [[1, 2], [3]], "must be an array of numbers: "),
+                ([0, 3, 0], [0, 0, 0], "World.set_velocity: an id is given twice, 0"),
                 ([0.5], [0, 0, 0], r"World.set_velocity: ids must be whole numbers, got \[0.5\]"),
                 ([-1], [0, 0, 0], "no particle has this id, got -1"),
                 ([[0]], [0, 0, 0], r"ids must have the shape \(n,\), got \(1, 1\)"),
@@ -187,7 +196,13 @@ class Particles(unittest.TestCase):
                            (lambda: world.add([0, 0, 1], 1e-3), r"World.add: r\[0\] must be inside the domain, got \(0, 0, 1\) m"),
                            (lambda: world.add([0, 0, 0.03], 1e-3, material="glas"), "no material 'glas'; the materials are glass"),
                            (lambda: world.add([0, 0, 0.03], 1e-3, group="a"), "the case has no group 'a'"),
-                           (lambda: world.add([0, 0, 0.03], 1e-3, replica=-1), "replica must be from 0 to 65535, got -1"),
+                           (lambda: world.add([0, 0, 0.03], 1e-3, group=5), "group must be a name, got 5"),
+                           (lambda: world.add([0, 0, 0.03], 1e-3, material=0.5), "number of the material must be a whole number from 0 to 0, got 0.5"),
+                           (lambda: world.add([0, 0, 0.03], 1e-3, replica=1.5), "replica must be a whole number from 0 to 65535, got 1.5"),
+                           (lambda: world.add(5, 1e-3), r"World.add: r: must have the shape \(1, 3\) or \(3,\), got \(\)"),
+                           (lambda: world.add([[1, 2, 3], [1, 2]], 1e-3), "World.add: r: must be an array of numbers"),
+                           (lambda: world.remove([[1], [1, 2]]), "World.remove: ids must be an array of whole numbers"),
+                           (lambda: world.add([0, 0, 0.03], 1e-3, replica=-1), "replica must be a whole number from 0 to 65535, got -1"),
                            (lambda: world.add(np.zeros((2, 2)), 1e-3), r"r: must have the shape \(2, 3\)")):
             with self.subTest(text=text), self.assertRaisesRegex(InvalidInput, text):
                 call()
@@ -252,7 +267,7 @@ class Boundaries(unittest.TestCase):
             setattr(floor, name, value)
 
         for call, text in ((lambda: world.boundary("flor"), "the case has no boundary 'flor'; did you mean 'floor'"),
-                           (lambda: world.boundary(3), "World.boundary: the number must be from 0 to 0, got 3"),
+                           (lambda: world.boundary(3), "World.boundary: the number must be a whole number from 0 to 0, got 3"),
                            (lambda: assign("v", [0, 0, 1]), "boundary 'floor' has a formula in the case that prescribes it"),
                            (lambda: assign("F", [0, 0, 1]), "Boundary.F: boundary 'floor' has no mass"),
                            (lambda: assign("omega", [0, 1]), r"Boundary.omega of 'floor': must have the shape \(3,\), got \(2,\)"),

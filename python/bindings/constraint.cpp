@@ -110,6 +110,12 @@ void PythonConstraint::variation(const Arguments& x, Derivatives& out) const
         out.C_j = Given(both + 6 * rows, rows, 6);
         return;
     }
+    differences(x, out);
+}
+
+/// The derivatives of Φ by the poses
+void PythonConstraint::differences(const Arguments& x, Derivatives& out) const
+{
     for (int c = 0; c < 12; ++c) {
         const auto displaced = [&](double by) {
             lie::Motion bi = x.bi, bj = x.bj;
@@ -129,7 +135,12 @@ void PythonConstraint::variation(const Arguments& x, Derivatives& out) const
 void PythonConstraint::nu(const Arguments& x, double* out) const
 {
     if (has(nu_)) return call(nu_, "nu", x, out);
-    Eigen::Map<Eigen::VectorXd>(out, rows) = -derivative(
+    Eigen::Map<Eigen::VectorXd>(out, rows) = nu_by_differences(x);
+}
+
+PythonConstraint::PositionRows PythonConstraint::nu_by_differences(const Arguments& x) const
+{
+    return -derivative(
         [&](double s) {
             return phi_at({x.bi, x.bj, x.t + s}, 0);
         },
@@ -165,10 +176,50 @@ PythonConstraint::PositionRows PythonConstraint::rate_at(const Arguments& x, dou
 void PythonConstraint::gamma(const Arguments& x, double* out) const
 {
     if (has(gamma_)) return call(gamma_, "gamma", x, out);
+    Eigen::Map<Eigen::VectorXd>(out, rows) = gamma_by_differences(x);
+}
+
+PythonConstraint::PositionRows PythonConstraint::gamma_by_differences(const Arguments& x) const
+{
     const double h = first_step / std::max({1., rate(x.bi), rate(x.bj)});
-    Eigen::Map<Eigen::VectorXd>(out, rows) =
-        has(variation_) ? -derivative([&](double s) { return rate_at(x, s); }, 1, h, "gamma of " + label())
-                        : -derivative([&](double s) { return phi_at(x, s); }, 2, h, "gamma of " + label());
+    return has(variation_) ? -derivative([&](double s) { return rate_at(x, s); }, 1, h, "gamma of " + label())
+                           : -derivative([&](double s) { return phi_at(x, s); }, 2, h, "gamma of " + label());
+}
+
+std::vector<std::string> PythonConstraint::check(const Arguments& start) const
+{
+    // Any velocities: gamma is zero at rest
+    lie::Motion bi = start.bi, bj = start.bj;
+    for (auto& [body, number] : {std::pair{&bi, i}, {&bj, j}})
+        if (number != dae::ground) {
+            body->rdot += lie::Vec3(0.31, -0.23, 0.47);
+            body->omega_bar += lie::Vec3(-0.29, 0.53, 0.17);
+        }
+    const Arguments x{bi, bj, start.t};
+    std::vector<std::string> found;
+    const auto compare = [&](const char* what, const auto& given, const auto& difference) {
+        constexpr double most = 1e-4;
+        Eigen::Index row = 0, column = 0;
+        const double largest = (given - difference).cwiseAbs().maxCoeff(&row, &column);
+        if (largest > most * std::max(1., difference.cwiseAbs().maxCoeff()))
+            found.push_back(fmt::format("{}: {} of row {} is {:.6g}, by differences {:.6g}{}", label(), what,
+                                        row + 1, given(row, column), difference(row, column),
+                                        given.cols() > 1 ? fmt::format(" (column {})", column + 1) : ""));
+    };
+    try {
+        PositionRows value(rows);
+        if (has(variation_)) {
+            Derivatives given, difference;
+            given.set_zero(*this), difference.set_zero(*this);
+            variation(x, given), differences(x, difference);
+            compare("C_i", given.C_i, difference.C_i);
+            if (j != dae::ground) compare("C_j", given.C_j, difference.C_j);
+        }
+        if (has(nu_)) nu(x, value.data()), compare("nu", value, nu_by_differences(x));
+        if (has(gamma_)) gamma(x, value.data()), compare("gamma", value, gamma_by_differences(x));
+    } catch (const lie::NumericalFailure&) {  // there is nothing to compare with
+    }
+    return found;
 }
 
 }  // namespace hilda::python

@@ -35,6 +35,10 @@ public:
     void nu(const Arguments& x, double* out) const override;
     void gamma(const Arguments& x, double* out) const override;
 
+    /// Compares the functions that are given with differences, with velocities of the order of 1, and returns
+    /// a line for each that differs.
+    std::vector<std::string> check(const Arguments& start) const;
+
 private:
     enum Which { phi_, variation_, nu_, gamma_ };
     using PositionRows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_position_rows, 1>;
@@ -44,6 +48,9 @@ private:
     void call(Which which, const char* what, const Arguments& x, double* out) const;
     PositionRows phi_at(const Arguments& x, double s) const;
     PositionRows rate_at(const Arguments& x, double s) const;
+    void differences(const Arguments& x, Derivatives& out) const;
+    PositionRows nu_by_differences(const Arguments& x) const;
+    PositionRows gamma_by_differences(const Arguments& x) const;
 
     const int rows;
     bool is_none[4];

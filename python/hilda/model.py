@@ -80,9 +80,10 @@ class Model:
         - gamma(x): gamma in C (rddot, omegadot_bar) = gamma, the second time derivative of the rows; shape (rows,).
 
         Functions that are not given are computed by differences, with relative errors of about 1e-9 if the rows change
-        smoothly over lengths of 1 mm and more. nu and gamma are refused where the estimated error exceeds 1e-5. The functions
-        must be defined a little outside of the run, also before its start. A call takes about 2 us, and differences take 48
-        of them for `variation`.
+        smoothly over lengths of 1 mm and more. Those that are given are compared with differences at the start, see
+        `warnings`. nu and gamma by differences are refused where the estimated error exceeds 1e-5. The functions must be
+        defined a little outside of the run, also before its start. A call takes about 2 us, and differences take 48 of
+        them for `variation`.
         """
         if not callable(type):
             return self._add("constraints", {"type": type, **keys})

@@ -107,6 +107,20 @@ class Constraints(unittest.TestCase):
         with self.assertRaises((hilda.NumericalFailure, hilda.InvalidInput)):
             bumpy.run()
 
+    def test_given_functions_are_compared_with_differences(self):
+        keys = {"variation": joint_variation, "gamma": joint_gamma, "nu": lambda x: np.zeros(3)}
+        right = pendulum().constraint(joint, body_i="bar", body_j="ground", rows=3, **keys)
+        self.assertEqual(right.warnings, [])
+        for change, text in (({"gamma": lambda x: -joint_gamma(x)}, "constraint 'joint': gamma of row "),
+                             ({"variation": lambda x: (2 * joint_variation(x)[0], joint_variation(x)[1])}, "C_i of row . is 2, by differences 1"),
+                             ({"nu": lambda x: np.array([0, 0.5, 0])}, "nu of row 2 is 0.5, by differences 0")):
+            wrong = pendulum().constraint(joint, body_i="bar", body_j="ground", rows=3, **{**keys, **change})
+            try:
+                warnings = wrong.warnings
+            except hilda.InvalidInput as error:  # the start is not consistent with the wrong function
+                warnings = [str(error)]
+            self.assertRegex("; ".join(warnings), text + "|violate")
+
     def test_threads_start_a_model_once(self):
         errors = []
 

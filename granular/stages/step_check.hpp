@@ -15,8 +15,9 @@ double stability_limit(const World::StepLimits& of);
 /// Receives the pointer of an entry and what is wrong.
 using StepFinding = std::function<void(const std::string& pointer, const std::string& what)>;
 
-/// Calls `above` for a step above the stability limit, at /step and at each stage whose laws have a smaller limit, and `coarse` for one above 1/5
-/// of the Rayleigh time or 1/15 of the collision time. Throws io::PlacedError if the run has no step.
+/// Calls `above` for a step above the stability limit, at /step and at each stage whose laws have a smaller
+/// limit, and `coarse` for one above 1/5 of the Rayleigh time or 1/15 of the collision time. Throws
+/// io::PlacedError if the run has no step.
 void check_step(const Case& c, const StepFinding& above, const StepFinding& coarse);
 
 }  // namespace hilda::granular

@@ -39,10 +39,10 @@ struct LeastSquaresSolution {
 };
 
 /// Minimises Σ residuals². The bounds are imposed by the transformation p = low + (high - low) sin² x, or
-/// with one bound p = low + (√(x² + 1) - 1) scale, so that p is between them in each evaluation. A bound that is
-/// 1e6 scales away from the start is not part of the transformation. A trial step beyond it, or at which the
-/// residuals cannot be computed, is refused, and the trust region is reduced. The result does not depend on
-/// the scale of the residuals.
+/// with one bound p = low + (√(x² + 1) - 1) scale, so that p is between them in each evaluation. A bound
+/// that is 1e6 scales away from the start is not part of the transformation. A trial step beyond it, or at
+/// which the residuals cannot be computed, is refused, and the trust region is reduced. The result does not
+/// depend on the scale of the residuals.
 ///
 /// Throws lie::InvalidInput if a start is not between its bounds, if a scale is not positive, or if there are
 /// fewer residuals than unknowns; lie::NumericalFailure "fit_start" if the residuals cannot be computed at

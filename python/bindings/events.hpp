@@ -15,7 +15,7 @@ public:
     std::unique_ptr<studies::RunTable> table(const std::string& name,
                                              std::vector<studies::TableColumn> columns) override;
 
-    /// Arrays event, rises, t, r, A, rdot, omega_bar, rddot and omegadot_bar with the event as first index
+    /// Arrays event, direction, t, r, A, rdot, omega_bar, rddot, omegadot_bar; the event is the first index
     pybind11::dict arrays(size_t bodies) const;
 
 private:

@@ -65,7 +65,7 @@ studies::FitResult run(studies::FitProblem& problem)
     try {
         studies::FitResult all = result.get();
         if (!signal) return all;
-    } catch (const lie::Interrupted&) {
+    } catch (...) {
         if (!signal) throw;
     }
     throw std::move(*signal);

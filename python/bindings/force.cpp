@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace hilda::python {
 
@@ -47,8 +48,10 @@ double PythonForce::potential_energy(const lie::State& x) const
 /// Adds an array of the shape (bodies, 3) to `out`.
 void PythonForce::add(const py::handle& object, const char* what, std::vector<lie::Vec3>& out) const
 {
-    const auto array = py::array_t<double, py::array::forcecast>::ensure(object);
-    if (array && array.ndim() == 2 && array.shape(0) == bodies && array.shape(1) == 3) {
+    const auto given = py::array::ensure(object);
+    if (given && std::string_view("biuf").find(given.dtype().kind()) != std::string_view::npos &&
+        given.ndim() == 2 && given.shape(0) == bodies && given.shape(1) == 3) {
+        const auto array = py::array_t<double, py::array::forcecast>(given);
         const auto value = array.unchecked<2>();
         for (int b = 0; b < bodies; ++b) {
             const lie::Vec3 of_body(value(b, 0), value(b, 1), value(b, 2));

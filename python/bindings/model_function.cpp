@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
 
 namespace hilda::python {
 
@@ -37,11 +38,15 @@ void ModelFunctions::clear()
 void read_array(const py::handle& object, const char* what, py::ssize_t rows, py::ssize_t columns,
                 double* out)
 {
-    const auto array = py::array_t<double, py::array::forcecast>::ensure(object);
-    if (!array) {
-        PyErr_Clear();
-        throw py::type_error(fmt::format("{} must be an array of numbers, got {}", what, type_of(object)));
-    }
+    const auto given = py::array::ensure(object);
+    if (!given)
+        throw py::error_already_set();  // of the conversion, such as one of lists of different lengths
+    if (std::string_view("biuf").find(given.dtype().kind()) == std::string_view::npos)
+        throw py::type_error(fmt::format("{} must be an array of numbers, got {}", what,
+                                         py::isinstance<py::array>(object)
+                                             ? py::str(given.dtype()).cast<std::string>()
+                                             : type_of(object)));
+    const auto array = py::array_t<double, py::array::forcecast>(given);
     std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim()), expected = {rows};
     if (columns > 0) expected.push_back(columns);
     if (shape != expected)

@@ -203,9 +203,17 @@ Outcome advance(lie::March& run, const lie::Integrator& integrator, lie::TimeGri
     } catch (const studies::StoppedByEvent& stop) {  // the state at the event is the last row
         out.status = "stopped";
         out.stopped_by = stop.event;
-        grid.steps = run.number();
-        rows.accepted(stop.x, run.number(), 0);
         out.t = stop.x.t;
+        grid.steps = run.number();
+        try {
+            rows.accepted(stop.x, run.number(), 0);
+        } catch (const py::error_already_set& error) {  // of a function of the model
+            out.status = "error";
+            out.error = with_traceback(error);
+        } catch (const std::exception&) {
+            out.status = "error";
+            out.error = python_error(std::current_exception());
+        }
     } catch (const io::NumericalFailure& failure) {
         // The start node of the failed step is the last valid node, and may be an output row.
         out.status = failure.status;

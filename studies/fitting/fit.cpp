@@ -64,7 +64,7 @@ public:
         all.degrees_of_freedom = all.values - static_cast<Index>(parameter.size());
         all.chi_squared = solution.residuals.squaredNorm();
         all.model = problem.read(changes(solution.p));
-        all.samples = sample(all.model, problem.data.columns, problem.data.t, problem.run);
+        all.samples = sample(all.model, problem.data.columns, problem.data.t, stoppable(problem.run));
         all.warnings = all.samples.warnings;
         estimate_errors(solution.p, solution.residuals, all);
         all.runs = runs;
@@ -139,9 +139,8 @@ private:
 
     VectorXd residuals(const VectorXd& p, SampledRunOptions options)
     {
-        options.settings.stop = [] { return stop_of_run != nullptr && stop_of_run->load(); };
         ++runs;
-        stop_of_run = problem.stop;
+        options = stoppable(options);
         const FitData& data = problem.data;
         dae::Description model = problem.read(changes(p));
         const MatrixXd values = sample(model, data.columns, data.t, options).values;
@@ -151,6 +150,14 @@ private:
             for (Index k = 0; k < values.rows(); ++k)
                 if (!std::isnan(data.values(k, c))) r[at++] = weight[c] * (values(k, c) - data.values(k, c));
         return r;
+    }
+
+    /// The options of a run of this thread that ends when FitProblem::stop is true
+    SampledRunOptions stoppable(SampledRunOptions options) const
+    {
+        stop_of_run = problem.stop;
+        options.settings.stop = [] { return stop_of_run != nullptr && stop_of_run->load(); };
+        return options;
     }
 
     bool residuals_or_none(const VectorXd& p, VectorXd& r)

@@ -122,6 +122,7 @@ class Forces(unittest.TestCase):
                                   (np.zeros(3), ValueError, r"F must have the shape \(1, 3\), got \(3,\)"),
                                   (np.full((1, 3), np.nan), ValueError, r"F of body 0 is not finite: \[nan, nan, nan\]"),
                                   ("abc", TypeError, "F must be an array of numbers, got str"),
+                                  (np.ones((1, 3), complex), TypeError, "F must be an array of numbers, got complex128"),
                                   (None, (TypeError, ValueError), "F must"),
                                   ((1, 2, 3), ValueError, r"must return F or \(F, n_bar\), got a tuple of 3")):
             model = pendulum().force(lambda x: value if x.t > 0.1 else np.zeros((1, 3)), name="bad")

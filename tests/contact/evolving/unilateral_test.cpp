@@ -366,7 +366,7 @@ TEST_CASE("contacts with indeterminate forces are named, or switch to their fall
         x.body[0].r = Vec3(0, 0, R / std::cos(lean));
         if (!fallback) {
             CHECK_THROWS_WITH(dae::start(model, x),
-                              Catch::Contains("already prevent the motion along the normal: 'wall 3'"));
+                              Catch::Contains("already prevent the same motion: contact 'wall 3'"));
             continue;
         }
         CHECK(dae::start(model, x).rank == 3);

@@ -37,10 +37,10 @@ struct RunOptions {
 
     bool json = false, quiet = false, verbose = false;
     int threads = 1;
-    std::string command_line;          ///< recorded in summary.json
+    std::string command_line;              ///< recorded in summary.json
     std::vector<std::string> inputs = {};  ///< files that were read besides those of the model
-    std::vector<std::string> plugins;  ///< that are loaded, see load_plugin()
-    Coupling* coupling = nullptr;      ///< of a co-simulation
+    std::vector<std::string> plugins;      ///< that are loaded, see load_plugin()
+    Coupling* coupling = nullptr;          ///< of a co-simulation
 };
 
 /// Simulates the model with each integrator, writes the results and prints a summary. Returns the exit code

@@ -387,7 +387,7 @@ Description read_model(std::string_view text, const std::string& file, std::span
                        const std::string& normal_rows, const std::string& folder)
 {
     JsonSource source{std::string(text), file};
-    source.folder = folder;
+    source.base = folder;
     for (const std::string& change : set) source.set(change);
     const Parameters parameters(source);
     source.parameters = &parameters;

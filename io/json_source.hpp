@@ -49,8 +49,8 @@ public:
     static constexpr std::size_t max_values = 2000000;  ///< each takes about 50 bytes of memory
 
     Json root;
-    std::string folder;  ///< of the files that the text names; "": the current directory
-    std::string base;    ///< of relative names of files; "": the current directory
+    std::string base;    ///< folder of relative names of files; "": the current directory
+    std::string within;  ///< folder that must contain the files of a granular case; "": they may be anywhere
     /// Files that the text names: the paths that ObjectReader::file() has returned
     mutable std::vector<std::string> files;
     const Parameters* parameters = nullptr;  ///< of the readers; nullptr: numbers are written as digits

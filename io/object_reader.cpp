@@ -140,8 +140,7 @@ std::string ObjectReader::file(std::string_view key)
     const std::string* path = v.string();
     if (path == nullptr || path->empty() || std::any_of(path->begin(), path->end(), is_control))
         fail(key, std::string(key) + " must be the path of a file, got " + described(v));
-    source.files.push_back(path->front() == '/' || source.folder.empty() ? *path
-                                                                         : source.folder + '/' + *path);
+    source.files.push_back(path->front() == '/' || source.base.empty() ? *path : source.base + '/' + *path);
     return source.files.back();
 }
 

@@ -32,7 +32,7 @@ public:
     std::string text(std::string_view key, const std::optional<std::string>& fallback = {});
     /// A text that is not empty and has no control characters, for use in messages and table headers
     std::string name(std::string_view key, const std::optional<std::string>& fallback = {});
-    /// Path of a file, relative to the folder of the text (JsonSource::folder) unless it is absolute. It is
+    /// Path of a file, relative to the folder of the text (JsonSource::base) unless it is absolute. It is
     /// not recorded.
     std::string file(std::string_view key);
     /// One of the allowed words

@@ -7,7 +7,7 @@ import types
 from pages import write
 
 GROUPS = (  # page, title, the modules whose names it has
-    ("models", "Models and runs", ("hilda.model", "hilda.result", "hilda.surface", "hilda.stored")),
+    ("models", "Models and runs", ("hilda.model", "hilda.result", "hilda.surface", "hilda.stored", "hilda.cosimulation")),
     ("integrators", "Integrators", ("hilda.integrator", "hilda._hilda")),
     ("studies", "Studies", ("hilda.orders", "hilda.work", "hilda.parameters", "hilda.fitting")),
     ("errors", "Errors", ("hilda.errors",)),

@@ -52,7 +52,7 @@ io::JsonSource changed_source(const std::string& text, const std::string& file,
                               const Environment& environment)
 {
     io::JsonSource source(text, file);
-    source.folder = environment.folder, source.base = environment.base;
+    source.within = environment.folder, source.base = environment.base;
     source.rename("every", "interval");
     source.rename("frames_every", "frame_interval");
     source.rename("checkpoint_every", "checkpoint_interval");

@@ -106,9 +106,9 @@ std::string ObjectReader::file(std::string_view key)
     std::string path = text(key);
     if (!source.base.empty()) path = (fs::path(source.base) / path).string();
     source.files.push_back(path);
-    if (source.folder.empty()) return path;
+    if (source.within.empty()) return path;
     std::error_code error;
-    const fs::path folder = fs::weakly_canonical(source.folder, error),
+    const fs::path folder = fs::weakly_canonical(source.within, error),
                    canonical = fs::weakly_canonical(fs::absolute(path, error), error);
     if (error ||
         std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first != folder.end())

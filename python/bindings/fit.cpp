@@ -3,13 +3,10 @@
 
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
-#include "python/bindings/errors.hpp"
+#include "python/bindings/settings.hpp"
 #include "studies/fitting/fit.hpp"
-#include "studies/framework/study.hpp"
-#include "studies/program/command_options.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/run_settings.hpp"
-#include "studies/running/watch/run_check.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
@@ -21,6 +18,8 @@
 #include <optional>
 
 namespace hilda::python {
+
+namespace py = pybind11;
 
 namespace {
 
@@ -122,14 +121,7 @@ py::dict fit(const Source& source, const std::vector<Parameter>& parameters, stu
     if (!step) options.scheme = &options.scheme->with_adaptive_steps();
     options.step = step.value_or(studies::default_step);
     options.fix_initial = fix_initial;
-    Names given;
-    for (const studies::SettingOption& option : studies::setting_options())
-        if (const auto value = settings.find(option.name.substr(2)); value != settings.end()) {
-            option.set(options.settings, option.name, value->second);
-            given.push_back(option.name);
-        }
-    studies::check_step_options(*options.scheme, given, step.has_value(), {});
-    studies::refuse_unused_settings("fit", given, {options.scheme});
+    options.settings = settings_of("fit", *options.scheme, settings, step.has_value(), {});
     std::optional<dae::Description> model;  // read if a start is not stated
     for (const auto& [pointer, start, low, high, scale] : parameters) {
         if (!start && !model) model = problem.read({});

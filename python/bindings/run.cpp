@@ -11,11 +11,11 @@
 #include "python/bindings/events.hpp"
 #include "python/bindings/integrator.hpp"
 #include "python/bindings/model.hpp"
+#include "python/bindings/settings.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/program/command_options.hpp"
 #include "studies/running/diagnosis.hpp"
 #include "studies/running/output_columns.hpp"
 #include "studies/running/run_settings.hpp"
@@ -253,22 +253,6 @@ py::dict counters(const lie::Statistics& of)
     return all;
 }
 
-lie::Settings settings_of(const lie::Scheme& scheme, const Options& options)
-{
-    lie::Settings settings;
-    settings.stop = &Signals::raised_in_run;
-    std::vector<std::string> given;
-    for (const studies::SettingOption& option : studies::setting_options())
-        if (const auto value = options.settings.find(option.name.substr(2));
-            value != options.settings.end()) {
-            option.set(settings, option.name, value->second);
-            given.push_back(option.name);
-        }
-    studies::check_step_options(scheme, given, options.step.has_value(), options.interval);
-    studies::refuse_unused_settings("run", given, {&scheme});
-    return settings;
-}
-
 /// The names, with those of a group in place of its name
 std::vector<std::string> column_names(const dae::Description& of, const std::vector<std::string>& given)
 {
@@ -295,17 +279,6 @@ std::vector<std::string> event_names(const dae::Description& of)
     return all;
 }
 
-/// Why the run cannot have events; empty if it can
-std::string no_events(const Options& options, const lie::Scheme& scheme, const lie::Integrator& integrator)
-{
-    if (!py::isinstance<py::str>(options.integrator)) return "events need an integrator of the library";
-    if (!scheme.resumes)
-        return scheme.name + " stores past steps outside the state; events need another integrator";
-    if (dynamic_cast<const contact::UnilateralStep*>(&integrator) != nullptr)
-        return "a model with unilateral contacts as constraints has no events";
-    return {};
-}
-
 py::dict run(const ModelPointer& model, const Options& options)
 {
     const dae::Description& of = model->description;
@@ -315,7 +288,9 @@ py::dict run(const ModelPointer& model, const Options& options)
     const lie::Scheme* scheme = in_python ? &own : &lie::scheme(options.integrator.cast<std::string>());
     if (!options.step) scheme = &scheme->with_adaptive_steps();
     const double end = options.end.value_or(of.end);
-    const lie::Settings settings = settings_of(*scheme, options);
+    lie::Settings settings =
+        settings_of("run", *scheme, options.settings, options.step.has_value(), options.interval);
+    settings.stop = &Signals::raised_in_run;
     lie::TimeGrid grid = studies::time_grid(*scheme, end, options.step, options.interval);
     std::vector<std::string> warnings = of.warnings;
     for (const std::string& row : model->start.dropped)
@@ -338,7 +313,9 @@ py::dict run(const ModelPointer& model, const Options& options)
     EventTables event_tables;
     std::unique_ptr<studies::RunEvents> events;
     if (!of.events.empty()) {
-        if (const std::string why = no_events(options, *scheme, *integrator); !why.empty())
+        if (const std::string why = in_python ? "events need an integrator of the library"
+                                              : studies::why_no_events(*scheme, *integrator);
+            !why.empty())
             throw io::UsageError("run: " + of.events.front().value->name_place + ": " + why);
         events = std::make_unique<studies::RunEvents>(
             of, [&] { return contact::make_integrator(system, *scheme, settings); }, event_tables);

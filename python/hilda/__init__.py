@@ -8,6 +8,7 @@
 
 from . import errors, so3  # before the extension module, which raises them
 from ._hilda import Saddle, State, System, __version__
+from .cosimulation import cosim
 from .errors import Error, FileError, InvalidInput, NotAvailable, NumericalFailure, UsageError
 from .fitting import Fit, fit
 from .integrator import Integrator
@@ -15,7 +16,7 @@ from .model import Model, integrators, problems, run
 from .orders import Convergence, convergence
 from .parameters import Sweep, sweep
 from .result import BodyResult, Events, Result
-from .stored import StoredResult, cosim, load
+from .stored import StoredResult, load
 from .surface import Surface
 from .work import WorkPrecision, work_precision
 

@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from . import _hilda
 from .errors import NumericalFailure, UsageError
 from .model import Model, Source, _json
+from .tables import Table, aligned, new_axes
 
 Start = float | None | Sequence[float | None]
 
 
-class Fit:
+class Fit(Table):
     """Fitted numbers of a model with their uncertainty.
 
     Attributes:
@@ -86,12 +87,6 @@ class Fit:
                  "low_95": float(self.interval[k, 0]), "high_95": float(self.interval[k, 1]), "bias": float(self.bias[k])}
                 for k, pointer in enumerate(self.parameters)]
 
-    def to_pandas(self) -> Any:
-        """The table as a pandas.DataFrame."""
-        import pandas
-
-        return pandas.DataFrame(self.rows())
-
     def plot(self, column: str | None = None, axes: Any = None) -> Any:
         """Draws the data and the fitted model of a column over time.
 
@@ -104,10 +99,7 @@ class Fit:
         column = self.columns[0] if column is None else column
         if column not in self.columns:
             raise UsageError(f"Fit.plot: the column must be one of {', '.join(self.columns)}, got '{column}'")
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.subplots(layout="constrained")[1]
+        axes = new_axes() if axes is None else axes
         k = self.columns.index(column)
         axes.plot(self.t, self.fitted[:, k], "-", label="fitted model")
         axes.plot(self.t, self.measured[:, k], "o", mfc="none", ms=4, label="data")
@@ -122,9 +114,8 @@ class Fit:
         cells = [["parameter", "value", "error", "bias"]]
         for row in self.rows():
             cells.append([row["parameter"], f"{row['value']:.10g}", f"{row['error']:.2e}", f"{row['bias']:.1e}"])
-        widths = [max(len(line[k]) for line in cells) for k in range(4)]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in cells]
-        return "\n".join([f"{self._name}: {self.degrees_of_freedom} degrees of freedom, sigma {self.sigma:.3g}", *lines, *self.warnings])
+        title = f"{self._name}: {self.degrees_of_freedom} degrees of freedom, sigma {self.sigma:.3g}"
+        return "\n".join([title, *aligned(cells), *self.warnings])
 
 
 def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], parameters: Mapping[str, Start],

@@ -13,11 +13,12 @@ from .errors import UsageError
 from .integrator import Integrator
 from .model import Model, Source
 from .result import Result
+from .tables import Table, new_axes
 
 QUANTITIES = {"r": "m", "A": "1", "v": "m/s", "omega": "rad/s"}
 
 
-class Convergence:
+class Convergence(Table):
     """Errors and orders.
 
     Attributes:
@@ -58,20 +59,11 @@ class Convergence:
                 table.append(row)
         return table
 
-    def to_pandas(self) -> Any:
-        """The table as a pandas.DataFrame."""
-        import pandas
-
-        return pandas.DataFrame(self.rows())
-
     def plot(self, quantity: str = "r", axes: Any = None) -> Any:
         """Draws the errors of a quantity over the step. Returns the matplotlib axes."""
         if quantity not in self.error:
             raise UsageError(f"Convergence.plot: the quantity must be one of {', '.join(self.error)}, got '{quantity}'")
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.subplots(layout="constrained")[1]
+        axes = new_axes() if axes is None else axes
         for integrator, values in zip(self.integrators, self.error[quantity]):
             axes.loglog(self.steps, values, "o-", label=integrator)
         axes.set_xlabel("h [s]")

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from .errors import UsageError
 from .model import Model, Source
 from .result import Result
+from .tables import Table, aligned, new_axes
 
 
-class Sweep:
+class Sweep(Table):
     """Numbers measured over a grid of values.
 
     Attributes:
@@ -43,12 +44,6 @@ class Sweep:
             table.append(row)
         return table
 
-    def to_pandas(self) -> Any:
-        """The table as a pandas.DataFrame."""
-        import pandas
-
-        return pandas.DataFrame(self.rows())
-
     def plot(self, name: str | None = None, axes: Any = None) -> Any:
         """Draws a measured number over the first entry of the grid, with a curve for each value of the others.
 
@@ -61,10 +56,7 @@ class Sweep:
         name = next(iter(self.measured)) if name is None else name
         if name not in self.measured:
             raise UsageError(f"Sweep.plot: the name must be one of {', '.join(self.measured)}, got '{name}'")
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.subplots(layout="constrained")[1]
+        axes = new_axes() if axes is None else axes
         pointers, values = list(self.grid), list(self.grid.values())
         for index in np.ndindex(*(len(v) for v in values[1:])):
             label = ", ".join(f"{pointer} = {v[k]}" for pointer, v, k in zip(pointers[1:], values[1:], index))
@@ -80,9 +72,7 @@ class Sweep:
     def __repr__(self) -> str:
         rows = self.rows()
         cells = [list(rows[0])] + [[f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()] for row in rows]
-        widths = [max(len(line[k]) for line in cells) for k in range(len(cells[0]))]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in cells]
-        return "\n".join([f"{self.model}: {len(rows)} runs", *lines, *self.failures])
+        return "\n".join([f"{self.model}: {len(rows)} runs", *aligned(cells), *self.failures])
 
 
 def sweep(source: Source, grid: Mapping[str, Sequence[Any]], measure: Mapping[str, Callable[[Result], float]],

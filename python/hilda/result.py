@@ -9,6 +9,8 @@ import numpy as np
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
+from .tables import new_axes
+
 if TYPE_CHECKING:
     from . import _hilda
 
@@ -101,10 +103,7 @@ class Result(Motions):
 
     def plot(self, body: str | int = -1, axes: Any = None) -> Any:
         """Draws x, y and z of a body over time. Returns the matplotlib axes."""
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.subplots(layout="constrained")[1]
+        axes = new_axes() if axes is None else axes
         number = self.index(body)
         for component, name in enumerate("xyz"):
             axes.plot(self.t, self.r[:, number, component], label=name)

@@ -1,25 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results in folders: of the program, and of co-simulations."""
+"""Results in folders."""
 
 from __future__ import annotations
 
 import csv
 import json
 import os
-import threading
 from typing import Any
 
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from . import _hilda
-from .errors import FileError, InvalidInput, NumericalFailure, UsageError
-from .model import _json
+from .errors import FileError, InvalidInput
 from .result import BodyResult, Motions
 
-Table = dict[str, NDArray[float64]]
-_one_at_a_time = threading.Lock()  # a co-simulation has the signals and the number of threads of the process
+Columns = dict[str, NDArray[float64]]
 
 
 class StoredResult(Motions):
@@ -61,7 +57,7 @@ class StoredResult(Motions):
         self.A = np.stack([self._vectors(trajectory, f"A{i}", "123") for i in "123"], axis=2)
         self.reaction_F = self.reaction_T = None
 
-    def _vectors(self, trajectory: Table, name: str, components: str = "xyz") -> NDArray[float64]:
+    def _vectors(self, trajectory: Columns, name: str, components: str = "xyz") -> NDArray[float64]:
         """Shape (n, bodies, 3)"""
         array = np.empty((len(self.t), len(self.bodies), 3))
         for b, body in enumerate(self.bodies):
@@ -90,58 +86,6 @@ def load(folder: str | os.PathLike[str]) -> StoredResult:
     return StoredResult(folder)
 
 
-def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: dict[str, Any] | None = None,
-          end: float | None = None, interval: float | None = None, contacts: bool = False, reactions: bool = False,
-          checkpoint: float = 0.0, threads: int = 1, fix_initial: bool = False, force: bool = False,
-          resume: bool = False) -> StoredResult:
-    """Simulates a mechanism and grains that act on each other, as `hilda cosim`.
-
-    Args:
-        file: path of a co-simulation file, see docs/guide/cosimulation.md.
-        output: folder of the results of the mechanism; those of the grains are in its folder grains.
-        set: changes of the file, from JSON pointers to values.
-        end: end time [s]; default: that of the file.
-        interval: time between rows of the mechanism [s]; default: that of the file.
-        contacts, reactions: write the contacts, and the constraint forces of the mechanism.
-        checkpoint: wall time between checkpoints [s]; 0: none.
-        threads: of the grains.
-        fix_initial: project inconsistent initial data onto the constraints.
-        force: overwrite a folder that is not empty.
-        resume: continue the run in the folder from its last checkpoint, also to a later end.
-
-    Returns the result that was written. Other threads of Python run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which
-    `resume` continues, and raises KeyboardInterrupt.
-
-    Raises:
-        InvalidInput, UsageError, FileError: before the run.
-        NumericalFailure: with the reason; the folder has the rows up to it.
-    """
-    if force and resume:
-        raise UsageError("cosim: force and resume exclude each other")
-    if not os.fspath(output):
-        raise UsageError("cosim: output must be the path of a folder, got an empty text")
-    if not 1 <= threads <= 1024:
-        raise UsageError(f"cosim: threads must be from 1 to 1024, got {threads}")
-    for name, value in (("end", end), ("interval", interval), ("checkpoint", checkpoint)):
-        if value is not None and not (value >= 0 and np.isfinite(value)):
-            raise UsageError(f"cosim: {name} must be finite and not negative, got {value}")
-    changes = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
-    folder = os.fspath(output)
-    if not _one_at_a_time.acquire(blocking=False):
-        raise UsageError("cosim: another thread runs a co-simulation; a process has one at a time")
-    try:
-        code = _hilda._cosim(os.fspath(file), folder, changes, end, interval, contacts, reactions, checkpoint, threads,
-                             fix_initial, force, resume)
-    finally:
-        _one_at_a_time.release()
-    if code > 128:
-        raise KeyboardInterrupt
-    if code != 0:
-        summary = _read_json(os.path.join(folder, "summary.json"))
-        raise NumericalFailure(summary.get("status", "failed"), f"{folder}: {summary.get('message', 'the run has failed')}")
-    return load(folder)
-
-
 def _read_json(path: str) -> dict[str, Any]:
     """The content of a JSON file; empty if there is none"""
     if not os.path.isfile(path):
@@ -154,7 +98,7 @@ def _read_json(path: str) -> dict[str, Any]:
         raise InvalidInput(f"{path}: is not a JSON file: {error}") from None
 
 
-def _read_tables(folder: str) -> dict[str, Table]:
+def _read_tables(folder: str) -> dict[str, Columns]:
     tables = {}
     for name in ("trajectory", "contacts", "forces", "outputs", "events", "run"):
         path = os.path.join(folder, name + ".csv")
@@ -176,7 +120,7 @@ def _read_tables(folder: str) -> dict[str, Table]:
     return tables
 
 
-def _read_csv(path: str) -> Table:
+def _read_csv(path: str) -> Columns:
     try:
         with open(path, encoding="utf-8", newline="") as file:
             rows = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))

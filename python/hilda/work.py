@@ -13,9 +13,10 @@ from .errors import UsageError
 from .integrator import Integrator
 from .model import Model, Source, integrators as registered
 from .orders import QUANTITIES, _errors
+from .tables import Table, aligned, new_axes
 
 
-class WorkPrecision:
+class WorkPrecision(Table):
     """Errors over computing time. A run of an integrator with adaptive steps has a tolerance, other runs have a step.
 
     Attributes:
@@ -68,19 +69,10 @@ class WorkPrecision:
                 table.append(row)
         return table
 
-    def to_pandas(self) -> Any:
-        """The table as a pandas.DataFrame."""
-        import pandas
-
-        return pandas.DataFrame(self.rows())
-
     def plot(self, quantity: str = "r", axes: Any = None) -> Any:
         """Draws the errors of a quantity over the computing time. Returns the matplotlib axes."""
         errors = self._of(quantity)
-        if axes is None:
-            import matplotlib.pyplot as plt
-
-            axes = plt.subplots(layout="constrained")[1]
+        axes = new_axes() if axes is None else axes
         for integrator, values, seconds in zip(self.integrators, errors, self.seconds):
             axes.loglog(seconds, values, "o-", label=integrator)
         axes.set_xlabel("CPU time [s]")
@@ -100,9 +92,7 @@ class WorkPrecision:
         for row in self.rows():
             value = row["step"] if np.isnan(row["rtol"]) else row["rtol"]
             cells.append([row["integrator"], f"{value:g}", f"{row['seconds']:.2e}", f"{row['error_r']:.2e}"])
-        widths = [max(len(line[k]) for line in cells) for k in range(4)]
-        lines = ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)) for line in cells]
-        return "\n".join([self.model, *lines, *self.failures])
+        return "\n".join([self.model, *aligned(cells), *self.failures])
 
 
 def work_precision(model: Model | Source, integrators: Iterable[str | type[Integrator]], steps: Sequence[float] = (),

@@ -30,7 +30,7 @@ CosimPair read_pair(const io::JsonSource& source, const io::Json& value, const s
 CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set)
 {
     io::JsonSource source(io::read_file(path, io::JsonSource::max_bytes), path);
-    source.folder = std::filesystem::path(path).parent_path().string();
+    source.base = std::filesystem::path(path).parent_path().string();
     for (const std::string& change : set) source.set(change, "--set");
     CosimFile f{.source = source};
     io::ObjectReader o(f.source, f.source.root, "");

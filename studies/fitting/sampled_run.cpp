@@ -23,9 +23,12 @@ constexpr double same = 1e-9;
 /// The columns at all nodes, row by row
 class Nodes final : public lie::Observer {
 public:
-    Nodes(ObservedColumns& columns, size_t number, const dae::Model& model, bool (*stop)())
+    /// `nodes`: their number
+    Nodes(ObservedColumns& columns, size_t number, size_t nodes, const dae::Model& model, bool (*stop)())
         : columns(columns), number(number), model(model), stop(stop)
-    {}
+    {
+        t.reserve(nodes), values.reserve(nodes * number);  // a step does not allocate memory
+    }
 
     void accepted(const lie::State& x, long n, int /*iterations*/) override
     {
@@ -98,7 +101,7 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
         contact::make_integrator(system, scheme, options.settings);
     Watch watch(system, model.x, *integrator, scheme, grid, Watch::Action::stop);
     ObservedColumns observed(system, model.outputs, "fit", columns);
-    Nodes nodes(observed, columns.size(), system, options.settings.stop);
+    Nodes nodes(observed, columns.size(), static_cast<size_t>(grid.steps) + 1, system, options.settings.stop);
     lie::Observer* const observers[] = {&nodes, &watch};
     lie::march(model.x, *integrator, grid, observers);
 

@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, std::string>> inputs_of(const io::Json& prove
     return all;
 }
 
-/// The record in a directory; nothing without a summary.json or study.json
+/// The record in a directory; nothing without a summary.json, study.json or fit.json
 std::optional<Record> record_in(const fs::path& directory)
 {
     for (const char* name : {"summary.json", "study.json", "fit.json"}) {
@@ -89,8 +89,9 @@ Record read_record(const fs::path& directory)
                                    common->file + " and " + found->file + "; repeat one of them");
     }
     if (!common)
-        throw io::InvalidInput(directory.string() +
-                               ": contains no summary.json or study.json, which record the command");
+        throw io::InvalidInput(
+            directory.string() +
+            ": contains no summary.json, study.json or fit.json, which record the command");
     return *common;
 }
 

@@ -9,7 +9,7 @@
 namespace hilda::studies {
 
 struct RerunOptions {
-    std::string directory;  ///< with summary.json or study.json
+    std::string directory;  ///< with summary.json, study.json or fit.json
     std::string output;     ///< of the repetition, new or empty; empty: DIRECTORY-again
     double tolerance = 0;   ///< see compare_results()
 };

@@ -120,14 +120,11 @@ std::unique_ptr<RunEvents> SingleRun::make_events(const lie::Settings& integrato
         throw io::UsageError("run: " + description.events.front().value->name_place + ": " + why);
     };
     if (options.coupling != nullptr) refuse("a co-simulation has no events");
-    if (!scheme.resumes)
-        refuse(scheme.name + " stores past steps outside the state; events need another integrator");
     if (options.error) refuse("--error is for models without events");
     const auto make = [this, integrator_settings] {
         return contact::make_integrator(*description.model, scheme, integrator_settings);
     };
-    if (dynamic_cast<contact::UnilateralStep*>(make().get()) != nullptr)
-        refuse("a model with unilateral contacts as constraints has no events");
+    if (const std::string why = why_no_events(scheme, *make()); !why.empty()) refuse(why);
     return std::make_unique<RunEvents>(description, make, tables);
 }
 

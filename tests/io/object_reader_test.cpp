@@ -69,7 +69,7 @@ TEST_CASE("a path in a text is relative to the folder of the text", "[io][object
     io::JsonSource source(R"({"a": "mesh/s.stl", "b": "/tmp/s.stl", "c": "", "d": 1, "e": "a\nb"})", "f");
     io::ObjectReader in_current_folder(source, source.root, "");
     CHECK(in_current_folder.file("a") == "mesh/s.stl");
-    source.folder = "models";
+    source.base = "models";
     io::ObjectReader o(source, source.root, "");
     CHECK(o.file("a") == "models/mesh/s.stl");
     CHECK(o.file("b") == "/tmp/s.stl");

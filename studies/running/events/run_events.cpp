@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/events/run_events.hpp"
 
+#include "contact/evolving/unilateral.hpp"
 #include "io/archive.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
 #include "studies/running/checkpoint.hpp"
 
 namespace hilda::studies {
@@ -26,6 +29,15 @@ std::vector<const dae::Output*> outputs_and_events(const dae::Description& d)
     for (const auto& output : d.outputs) all.push_back(output.get());
     for (const dae::Event& event : d.events) all.push_back(event.value.get());
     return all;
+}
+
+std::string why_no_events(const lie::Scheme& scheme, const lie::Integrator& integrator)
+{
+    if (!scheme.resumes)
+        return scheme.name + " stores past steps outside the state; events need another integrator";
+    if (dynamic_cast<const contact::UnilateralStep*>(&integrator) != nullptr)
+        return "a model with unilateral contacts as constraints has no events";
+    return {};
 }
 
 RunEvents::RunEvents(const dae::Description& description, lie::EventSearch::Make make, RunTables& tables)

@@ -15,6 +15,10 @@
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+struct Scheme;
+}
+
 namespace hilda::studies {
 
 /// Thrown by RunEvents::accepted(): an event with the action stop was found before this node.
@@ -25,6 +29,9 @@ struct StoppedByEvent {
 
 /// The outputs of a model and, after them, the formulas of its events, which may use their columns
 std::vector<const dae::Output*> outputs_and_events(const dae::Description& description);
+
+/// Why a run has no events; empty if it can have them
+std::string why_no_events(const lie::Scheme& scheme, const lie::Integrator& integrator);
 
 /// Writes a row of the table events at each event. It observes the nodes of a run before its sinks, so that
 /// these receive no node after the end.

@@ -14,6 +14,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 
@@ -97,9 +98,9 @@ std::string geometry(const fs::path& directory)
 void refuse_other_file(const std::string& output, bool video)
 {
     if (!has_file(output)) return;
-    const std::string text = io::read_file(output, std::numeric_limits<size_t>::max());
-    const bool is_same =
-        video ? std::string_view(text).substr(0, 12).find("ftyp") == 4 : text.starts_with("<!DOCTYPE html>");
+    std::string begin(16, '\0');
+    std::ifstream(output, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    const bool is_same = video ? begin.find("ftyp") == 4 : begin.starts_with("<!DOCTYPE html>");
     if (!is_same)
         throw io::InvalidInput(output + ": the file exists and is no " +
                                (video ? "MP4 video" : "page of hilda view") + "; it is not replaced");

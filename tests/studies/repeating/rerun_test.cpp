@@ -51,7 +51,7 @@ TEST_CASE("hilda rerun refuses a folder that is no result")
     const Scratch in;
     CHECK(call(in, {"rerun", "none"}).code == 3);
     fs::create_directory(in / "a");
-    CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("contains no summary.json or study.json"));
+    CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("contains no summary.json, study.json or fit.json"));
     write(in / "a/summary.json", "{}");
     CHECK_THAT(call(in, {"rerun", "a"}).err, Contains("has no command line"));
     write(in / "a/summary.json", R"({"provenance": {"command_line": "rm -r x"}})");

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/bindings/settings.hpp"
+
+#include "lie/schemes.hpp"
+#include "studies/framework/study.hpp"
+#include "studies/program/command_options.hpp"
+#include "studies/running/watch/run_check.hpp"
+
+namespace hilda::python {
+
+lie::Settings settings_of(const std::string& command, const lie::Scheme& scheme,
+                          const std::map<std::string, std::string>& values, bool has_step,
+                          std::optional<double> interval)
+{
+    lie::Settings settings;
+    std::vector<std::string> given;
+    for (const studies::SettingOption& option : studies::setting_options())
+        if (const auto value = values.find(option.name.substr(2)); value != values.end()) {
+            option.set(settings, option.name, value->second);
+            given.push_back(option.name);
+        }
+    studies::check_step_options(scheme, given, has_step, interval);
+    studies::refuse_unused_settings(command, given, {&scheme});
+    return settings;
+}
+
+}  // namespace hilda::python

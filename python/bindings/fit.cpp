@@ -95,6 +95,7 @@ py::dict as_dict(const studies::FitResult& result)
     all["singular_values"] = result.singular_values;
     all["directions"] = result.directions;
     all["fitted"] = result.samples.values;
+    all["units"] = result.units;
     all["name"] = result.model.name;
     all["text"] = result.model.text;
     all["iterations"] = result.iterations;

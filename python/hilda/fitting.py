@@ -40,7 +40,7 @@ class Fit(Table):
             is the condition.
         directions: columns with the relative changes that belong to the singular values.
         t: instants of the data [s]; shape (n,).
-        columns: names of the columns.
+        columns, units: names and units of the columns.
         measured, fitted: values of the data and of the fitted model; shape (n, columns).
         iterations, runs: their numbers.
         converged: False only for the `fit` of a NumericalFailure.
@@ -61,6 +61,7 @@ class Fit(Table):
     singular_values: NDArray[float64]
     directions: NDArray[float64]
     fitted: NDArray[float64]
+    units: list[str]
     iterations: int
     runs: int
     converged: bool
@@ -104,7 +105,7 @@ class Fit(Table):
         axes.plot(self.t, self.fitted[:, k], "-", label="fitted model")
         axes.plot(self.t, self.measured[:, k], "o", mfc="none", ms=4, label="data")
         axes.set_xlabel("t [s]")
-        axes.set_ylabel(column)
+        axes.set_ylabel(f"{column} [{self.units[k]}]" if self.units[k] not in ("", "1") else column)
         axes.set_title(self._name)
         axes.legend()
         axes.grid(True, alpha=0.3)

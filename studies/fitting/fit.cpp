@@ -66,6 +66,7 @@ public:
         all.model = problem.read(changes(solution.p));
         all.samples = sample(all.model, problem.data.columns, problem.data.t, stoppable(problem.run));
         all.warnings = all.samples.warnings;
+        all.units = units;
         estimate_errors(solution.p, solution.residuals, all);
         all.runs = runs;
         return all;
@@ -107,15 +108,15 @@ private:
         const dae::Description model = problem.read(changes(start));
         const ObservedColumns observed(*model.model, model.outputs, problem.data.source,
                                        problem.data.columns);
+        for (size_t c = 0; c < problem.data.columns.size(); ++c) units.push_back(observed.column(c).unit);
         weight = VectorXd::Ones(static_cast<Index>(problem.data.columns.size()));
         if (problem.sigma.empty()) {
             for (size_t c = 1; c < problem.data.columns.size(); ++c)
-                if (observed.column(c).unit != observed.column(0).unit)
+                if (units[c] != units[0])
                     throw io::UsageError(fmt::format(
                         "fit: the columns {} [{}] and {} [{}] have different units; --sigma states the "
                         "standard deviation of each",
-                        problem.data.columns[0], observed.column(0).unit, problem.data.columns[c],
-                        observed.column(c).unit));
+                        problem.data.columns[0], units[0], problem.data.columns[c], units[c]));
             return;
         }
         if (problem.sigma.size() != problem.data.columns.size())
@@ -394,6 +395,7 @@ private:
 
     const FitProblem& problem;
     std::vector<FitParameter> parameter;
+    std::vector<std::string> units;     ///< of the columns
     VectorXd weight;                    ///< 1/σ of each column
     bool derivatives_are_known = true;  ///< at the minimum
     std::string refusal;                ///< why the last run without residuals has failed

@@ -57,9 +57,10 @@ struct FitResult {
     long values = 0, degrees_of_freedom = 0;
     /// Of J times the scales, descending. The scale of a parameter without one is its value.
     Eigen::VectorXd singular_values;
-    Eigen::MatrixXd directions;  ///< of these singular values, in units of the scales
-    Samples samples;             ///< of the fitted model
-    dae::Description model;      ///< the fitted model
+    Eigen::MatrixXd directions;      ///< of these singular values, in units of the scales
+    Samples samples;                 ///< of the fitted model
+    std::vector<std::string> units;  ///< of the columns
+    dae::Description model;          ///< the fitted model
     int iterations = 0;
     long runs = 0;
     bool has_converged = false;

@@ -70,6 +70,9 @@ io::Json as_json(const FitResult& result, const FitProblem& problem, const FitOp
         all["rtol"] = problem.run.settings.rtol;
     else
         all["step"] = problem.run.step;
+    all["columns"] = io::Json::array();
+    for (size_t c = 0; c < result.units.size(); ++c)
+        all["columns"].push_back({{"name", problem.data.columns[c]}, {"unit", result.units[c]}});
     all["parameters"] = io::Json::array();
     for (size_t k = 0; k < result.parameters.size(); ++k) {
         const FittedParameter& of = result.parameters[k];
@@ -209,9 +212,7 @@ FitParameter fit_parameter(const std::string& text, const dae::Description& mode
         if (std::isnan(*to[k])) refuse("'" + parts[k] + "' is no finite number");
     }
     if (parts.size() == 4 && !parts[3].empty() && !(all.scale > 0)) refuse("SCALE must be positive");
-    if (parts.empty() || parts[0].empty()) {
-        all.start = number_at(model, all.pointer);
-    }
+    if (parts.empty() || parts[0].empty()) all.start = number_at(model, all.pointer);
     if (!(all.low < all.start && all.start < all.high))
         refuse(fmt::format("START must be between LOW and HIGH: {} < {} < {} is not true", all.low, all.start,
                            all.high));

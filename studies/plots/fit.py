@@ -20,7 +20,8 @@ def draw(folder):
     with open(os.path.join(folder, "fit.json"), encoding="utf-8") as file:
         record = json.load(file)
     rows = read(folder, "fit.csv")
-    names = [name[:-5] for name in rows[0] if name.endswith(".data")]
+    names = [column["name"] for column in record["columns"]]
+    units = {column["name"]: f" [{column['unit']}]" if column["unit"] not in ("", "1") else "" for column in record["columns"]}
     shown = names[:MOST_PANELS]
     t = numbers(rows, "t")
     figure, axes = plt.subplots(2, len(shown), figsize=(min(11, 3.6 * len(shown) + 1.2), 5), sharex=True, squeeze=False,
@@ -29,7 +30,7 @@ def draw(folder):
         data, model = numbers(rows, name + ".data"), numbers(rows, name + ".model")
         above.plot(t, model, "-", lw=1.2, color="C0", label="model")
         above.plot(t, data, "o", ms=3, mfc="none", color="C1", label="data")
-        above.set_title(name, fontsize="medium")
+        above.set_title(name + units[name], fontsize="medium")
         below.plot(t, [d - m for d, m in zip(data, model)], "o", ms=3, mfc="none", color="C1")
         below.axhline(0, lw=0.8, color="0.6")
         below.set_xlabel("t [s]")

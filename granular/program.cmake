@@ -9,6 +9,7 @@
 # hilda_granular_parts: the objects of hilda-granular that do not depend on the laws (granular_law_files).
 set(hilda_granular_root "${CMAKE_CURRENT_LIST_DIR}")
 include("${hilda_granular_root}/laws.cmake")
+include("${hilda_granular_root}/loops.cmake")
 include("${hilda_granular_root}/dependencies.cmake")
 
 # A macro, because enable_language must be called at file scope.
@@ -42,6 +43,11 @@ function(granular_add_program name)
     # The flags of hilda-granular, so that both programs give the same bytes.
     target_compile_options(${name} PRIVATE
         "$<$<COMPILE_LANGUAGE:CXX>:${flags};-Wno-psabi>" "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>")
+    if(hilda_granular_dispatch) # the objects in hilda_granular_parts refer to the loops for all instruction sets
+        granular_compile_loops(${name} "${root}" loops INCLUDES "${generated}" "${root}/.."
+            FLAGS ${flags} $<$<NOT:$<CONFIG:Debug>>:-O3>)
+        target_sources(${name} PRIVATE ${loops})
+    endif()
     target_link_libraries(${name} PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${hilda_granular_parts}>"
         granular_thrust_target OpenMP::OpenMP_CXX CLI11::CLI11)
     if(granular_cuda)

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Creation of an engine, and the neighbour search on the CPU.
+// Creation of an engine
 #include "granular/backend/engine_impl.hpp"
-#include "granular/core/neighbours/neighbours_impl.hpp"
 
 namespace hilda::granular {
-
-template class Neighbours<par::Cpu>;
 
 std::unique_ptr<Engine> make_engine(Device device)
 {

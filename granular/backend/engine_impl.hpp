@@ -3,9 +3,11 @@
 #pragma once
 
 #include "granular/backend/engine.hpp"
+#include "granular/backend/instruction_set.hpp"
 #include "granular/backend/pair_lists.hpp"
 #include "granular/backend/transfer.hpp"
 #include "granular/backend/watch_arrays.hpp"
+#include "granular/core/cpu_loops.hpp"
 #include "granular/core/surfaces/hand_over.hpp"
 #include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"
@@ -171,15 +173,18 @@ public:
             if (new_lists) resting.send(*this, blocks.resting), moving.send(*this, blocks.moving);
             resting.replace(near.resting), moving.replace(near.moving);
         }
-        neighbours.find({.domain = domain,
-                         .law_of = one_law ? nullptr : law_of.data(),
-                         .materials = materials,
-                         .surfaces = surfaces(),
-                         .near = near,
-                         .rotation_laws = rotation_laws,
-                         .internal = internal,
-                         .clump_of = clump_of.size() > 0 ? clump_of.data() : nullptr},
-                        own.particle, own.pairs);
+        const SearchInput input{.domain = domain,
+                                .law_of = one_law ? nullptr : law_of.data(),
+                                .materials = materials,
+                                .surfaces = surfaces(),
+                                .near = near,
+                                .rotation_laws = rotation_laws,
+                                .internal = internal,
+                                .clump_of = clump_of.size() > 0 ? clump_of.data() : nullptr};
+        if constexpr (is_cpu)
+            cpu_loops().find_neighbours(neighbours, input, own.particle, own.pairs);
+        else
+            neighbours.find(input, own.particle, own.pairs);
         find_attached();
         list_members(domain);
         plan.reset();
@@ -191,7 +196,8 @@ public:
         if (!meshes->triangle.empty())
             triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
         if constexpr (is_cpu)
-            triangle_contacts.list(pair_view(), surfaces(), with_triangle.data(), triangle_pairs);
+            cpu_loops().list_triangles(triangle_contacts, pair_view(), surfaces(), with_triangle.data(),
+                                       triangle_pairs);
         if (watched) prepare_watch();
     }
 
@@ -213,8 +219,10 @@ public:
         if constexpr (is_cpu) {
             // Those with triangles are the last ones of the list.
             const auto others = static_cast<std::uint32_t>(plan.list.size()) - triangle_pairs;
-            find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
-            triangle_contacts.find_loads(on, particles, pairs, law_view(h), own.pairs.start.data(), path);
+            const CpuLoops& loops = cpu_loops();
+            loops.find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
+            loops.find_triangle_loads(triangle_contacts, particles, pairs, law_view(h),
+                                      own.pairs.start.data(), path);
             pending = {particles, pairs, law_view(h)};
         } else {
             if (triangle_pairs > 0)
@@ -414,8 +422,9 @@ protected:
     {
         const std::uint32_t n = own.particle.count;
         if constexpr (is_cpu) {
-            if (arrays.step.part == Part::before_loads) return advance_before_loads(on, n, arrays);
-            return sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, n);
+            const CpuLoops& loops = cpu_loops();
+            if (arrays.step.part == Part::before_loads) return loops.advance_before_loads(on, n, arrays);
+            return loops.sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, n);
         } else {
             return granular::advance(on, n, arrays);
         }

@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include "granular/backend/instruction_set.hpp"
 #include "granular/backend/pair_lists.hpp"
 #include "granular/backend/transfer.hpp"
+#include "granular/core/cpu_loops.hpp"
 
 #include <utility>
 
@@ -105,7 +107,10 @@ public:
     ContactPart contact_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
                              const LawView& laws)
     {
-        add_contacts(on, particles, pairs, laws, contact_blocks.data());
+        if constexpr (std::is_same_v<Backend, par::Cpu>)
+            cpu_loops().add_contacts(on, particles, pairs, laws, contact_blocks.data());
+        else
+            add_contacts(on, particles, pairs, laws, contact_blocks.data());
         return detail::total(on, contact_blocks, host_contact_blocks);
     }
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/backend/lanes.hpp"
+#include "granular/backend/pack.hpp"
 #include "granular/core/contact_loop.hpp"
 
 #include <algorithm>

@@ -282,7 +282,7 @@ struct Sweep : detail::ContactPacks {
             std::memcpy(partner, &j_words, sizeof partner);
             const Integers found = integers(i, partner);
             const unsigned touching = found.squares.positive() & near;
-            set_flags(pairs.in_contact + first, touching, near);
+            if (((touching ^ before) & near) != 0) set_flags(pairs.in_contact + first, touching, near);
             for (unsigned ended = before & near & ~touching; ended != 0; ended &= ended - 1)
                 clear_history(first + static_cast<std::uint32_t>(__builtin_ctz(ended)));
             for (unsigned remaining = before & ahead; remaining != 0; remaining &= remaining - 1) {
@@ -295,14 +295,13 @@ struct Sweep : detail::ContactPacks {
             const std::uint32_t h = hits.count;
             const detail::PackOverlap overlap = found.to_floats();
             if (prefetches) prefetch(partner, first);
-            append(hits.n + h, first, touching);
+            hits.count = h + append(hits.n + h, first, touching);
             compress(hits.i + h, i_words, touching), compress(hits.j + h, j_words, touching);
             compress(hits.x + h, overlap.separation.x, touching);
             compress(hits.y + h, overlap.separation.y, touching);
             compress(hits.z + h, overlap.separation.z, touching);
             compress(hits.q + h, overlap.q, touching), compress(hits.d2 + h, overlap.d2, touching);
             compress(hits.D + h, overlap.D, touching);
-            hits.count = h + static_cast<std::uint32_t>(__builtin_popcount(touching));
         }
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/arguments.hpp"
 
+#include "granular/backend/instruction_set.hpp"
 #include "granular/program/device_name.hpp"
 #include "granular/program/provenance.hpp"
 #include "granular/running/sink.hpp"
@@ -123,6 +124,11 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
               o.device = *device;
               o.device_name = text;
           });
+    value("--isa", "NAME",
+          "vector instructions of the loops on the CPU, without influence on the results: sse2, v3 (AVX2) or "
+          "v4 "
+          "(AVX-512); default: HILDA_ISA of the environment, or the widest ones that the processor has",
+          [](const std::string& option, const std::string& text) { choose_instruction_set(text, option); });
     io::add_sink_options<CaseSetup>(app, o.run.outputs);
     app.add_flag(
         "--exchange", o.exchanges,
@@ -168,8 +174,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         interval = every;  // the origin in messages is then --interval
         if (!o.run.quiet) io::warning("--every was renamed to --interval; the old name is still read");
     }
-    std::set<std::string> of_all = {"CASE",     "NAME",   "--write",  "--lammps", "--threads",
-                                    "--device", "--full", "--strict", "--quiet",  "--verbose"};
+    std::set<std::string> of_all = {"CASE",  "NAME",   "--write",  "--lammps", "--threads", "--device",
+                                    "--isa", "--full", "--strict", "--quiet",  "--verbose"};
     if (o.run.file == "export")
         of_all.insert(
             {"--set", "--seed", "--step", "--end", "--interval", "--output", "--force", "--allow-paths"});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/program/provenance.hpp"
 
+#include "granular/backend/instruction_set.hpp"
 #include "granular/build.hpp"
 #include "io/provenance.hpp"
 
@@ -31,7 +32,13 @@ std::string version_line()
 
 std::string build_line()
 {
-    return std::string("build: ") + build::compiler + ", " + build::flags + "\ndevices: CPU" +
+    std::string sets;
+    for (const InstructionSet& set : instruction_sets())
+        sets += (sets.empty() ? "" : ", ") + std::string(set.name);
+    const InstructionSet& chosen = instruction_set();
+    return std::string("build: ") + build::compiler + ", " + build::flags +
+           "\nvector instructions: " + chosen.name + " (" + chosen.description + "), of " + sets +
+           "\ndevices: CPU" +
            (*build::cuda != '\0' ? std::string(", CUDA ") + build::cuda : "; built without CUDA");
 }
 
@@ -43,6 +50,7 @@ io::Json provenance(const std::string& command_line, int threads, const std::str
     io::Json all = io::provenance({build::number, git, build::build_type, build::flags, build::compiler},
                                   libraries, command_line, threads);
     all["device"] = device;
+    all["vector_instructions"] = instruction_set().name;
     if (*build::added_laws != '\0') all["added_laws"] = build::added_laws;
     return all;
 }

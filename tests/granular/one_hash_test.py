@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two cases that combine most features have one SHA-256 each, for any threads, interruptions, rows and checkpoints.
+"""Two cases that combine most features have one SHA-256 each, for any threads, vector instructions, interruptions, rows and
+checkpoints.
 
     one_hash_test.py PROGRAM
 """
@@ -8,6 +9,7 @@ import csv
 import hashlib
 import json
 import os
+import re
 import signal
 import sys
 import tempfile
@@ -114,6 +116,12 @@ def sha(runs, output):
                           (out / "checkpoint.end").read_bytes()).hexdigest()
 
 
+def instruction_sets(runs):
+    """Names of the sets of vector instructions that the program and this processor have"""
+    line = re.search("^vector instructions: .*, of (.*)$", runs.run("--version").stdout, re.M)
+    return [name for name in line[1].split(", ") if runs.run("laws", "--isa", name).returncode == 0]
+
+
 def check_content(runs, name):
     """The case has what it is meant to combine"""
     particles, left, rows = (table(runs, "whole", f"{kind}.csv") for kind in ("particles", "outflow", "run"))
@@ -195,6 +203,10 @@ def main():
                 output = "whole" if threads == 1 else "threads"
                 runs.finish(case, *options(), "--threads", str(threads), "--output", output, "--force")
                 hashes[f"{threads} threads"] = sha(runs, output)
+            for isa in instruction_sets(runs):
+                runs.finish(case, *options(), "--threads", "2", "--isa", isa, "--output", "isa", "--force")
+                expect(runs.summary("isa")["provenance"]["vector_instructions"] == isa, f"{name}: --isa {isa} is in the summary")
+                hashes[isa] = sha(runs, "isa")
             contents = check_content(runs, name)
             hashes.update(interrupted(runs, case))
             expect(len(set(hashes.values())) == 1, f"{name}: one hash: {hashes}")

@@ -2,6 +2,7 @@
 // The same world on several engines: packs of the CPU, scalar loops of the GPU executed on the CPU, and a GPU
 // if there is one. All results are bitwise equal.
 #include "granular/backend/engine_impl.hpp"
+#include "granular/backend/instruction_set.hpp"
 #include "granular/core/loops.hpp"
 #include "granular/core/neighbours/neighbours_impl.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
@@ -241,6 +242,34 @@ TEST_CASE("packs and scalar loops give bitwise equal results", "[granular][engin
             CHECK(dense_packing(granular::make_engine({}), n) ==
                   dense_packing(std::make_unique<granular::EngineOn<ScalarBackend>>(), n));
         }
+}
+
+TEST_CASE("the loops of every instruction set give the bits of the scalar loops", "[granular][engine][mesh]")
+{
+    const Scheme scheme = Scheme::velocity_verlet;
+    const std::string packing =
+                          mixed_packing(std::make_unique<granular::EngineOn<ScalarBackend>>(), 9, scheme),
+                      drum = mesh_drum(std::make_unique<granular::EngineOn<ScalarBackend>>(), scheme),
+                      before = granular::instruction_set().name;
+    int available = 0;
+    for (const granular::InstructionSet& set : granular::instruction_sets()) {
+        if (!set.available()) continue;
+        CAPTURE(set.name);
+        ++available;
+        granular::choose_instruction_set(set.name);
+        CHECK(granular::instruction_set().name == std::string(set.name));
+        CHECK(mixed_packing(granular::make_engine({}), 9, scheme) == packing);
+        CHECK(mesh_drum(granular::make_engine({}), scheme) == drum);
+    }
+    granular::choose_instruction_set(before);
+    CHECK(available > 0);
+}
+
+TEST_CASE("an unknown instruction set is refused with the list of those of the build", "[granular][engine]")
+{
+    const std::string first = granular::instruction_sets().front().name;
+    CHECK_THROWS_WITH(granular::choose_instruction_set("avx9"),
+                      Catch::StartsWith("--isa: must be one of " + first) && Catch::EndsWith(", got 'avx9'"));
 }
 
 // The CPU skips the search for the closest feature where it cannot have changed; the scalar loops do not.

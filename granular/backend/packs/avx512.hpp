@@ -1,15 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Loads and stores rows of four words, one row per lane, as four packs (a 4 x lanes transposition).
+/// Packs of 16 floats: AVX-512 with the parts F, BW, CD, DQ and VL (x86-64-v4)
 
 #pragma once
 
-#include "granular/backend/pack.hpp"
+#include "granular/backend/pack_types.hpp"
+
+#include <cstring>
+
+#include <immintrin.h>
 
 namespace hilda::granular {
 
+inline Pack sqrt(Pack a) { return Pack::V(_mm512_sqrt_ps(__m512(a.v))); }
+inline Pack rint(Pack a)
+{
+    return Pack::V(_mm512_roundscale_ps(__m512(a.v), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
+}
+inline unsigned bits(PackMask m) { return _mm512_movepi32_mask(__m512i(m.v)); }
+
+class Squares {
+public:
+    Squares() = default;
+    Squares(Ints x, Ints y, Ints z, Ints D)
+    {
+        // The multiplication reads the even lanes; the odd ones are shifted into them.
+        const auto squares = [](const auto& of, __m512i& d2, __m512i& q) {
+            const auto square = [](__m512i a) { return _mm512_mul_epi32(a, a); };
+            d2 = _mm512_add_epi64(_mm512_add_epi64(square(of[0]), square(of[1])), square(of[2]));
+            q = _mm512_sub_epi64(square(of[3]), d2);
+        };
+        const __m512i even[4] = {__m512i(x.v), __m512i(y.v), __m512i(z.v), __m512i(D.v)};
+        __m512i odd[4];
+        for (int k = 0; k < 4; ++k) odd[k] = _mm512_srli_epi64(even[k], 32);
+        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
+    }
+    Pack sum() const { return merged(even_d2, odd_d2); }
+    Pack difference() const { return merged(even_q, odd_q); }
+    /// Bit k of the result: the difference of lane k is positive
+    unsigned positive() const
+    {
+        const __m512i zero = _mm512_setzero_si512(), even = _mm512_sub_epi64(zero, even_q),
+                      odd = _mm512_sub_epi64(zero, odd_q);
+        return _mm512_movepi32_mask(_mm512_mask_blend_epi32(0xAAAA, _mm512_srli_epi64(even, 32), odd));
+    }
+
+private:
+    static Pack merged(__m512i even, __m512i odd)
+    {
+        const auto wide = [](__m512i a) {
+            return _mm512_cvtepu32_epi64(_mm256_castps_si256(_mm512_cvtepi64_ps(a)));
+        };
+        return Pack::V(_mm512_or_si512(wide(even), _mm512_slli_epi64(wide(odd), 32)));
+    }
+    __m512i even_d2, odd_d2, even_q, odd_q;
+};
+
 namespace detail {
 
-#ifdef __AVX512F__
 /// Quarter q of register a[r] holds four words of a row, which become lane 4 q + r of the registers out.
 inline void transpose(const __m512i a[4], __m512i out[4])
 {
@@ -55,121 +102,70 @@ inline void store_transposed(const __m512i in[4], const At& at)
         _mm_store_si128(at(12 + r), _mm512_extracti32x4_epi32(a[r], 3));
     }
 }
-#endif
 
 }  // namespace detail
 
-/// Lane k of out[w] is word w of the row at address at(k). Rows start with 16 bytes that are aligned to 16.
 template <class Word, class Row, class At>
 inline void load_rows(const At& at, Word out[4])
 {
-    static_assert(sizeof(Row) % 16 == 0 && sizeof(Word) == 4 * lanes);
-#ifdef __AVX512F__
+    static_assert(sizeof(Row) % 16 == 0);
     __m512i words[4];
     detail::load_transposed([&](int k) { return reinterpret_cast<const __m128i*>(at(k)); }, words);
     std::memcpy(out, words, sizeof words);
-#else
-    float words[4][lanes];
-    for (int k = 0; k < lanes; ++k) {
-        float row[4];
-        std::memcpy(row, at(k), sizeof row);
-        for (int w = 0; w < 4; ++w) words[w][k] = row[w];
-    }
-    std::memcpy(out, words, sizeof words);
-#endif
 }
-
-/// Stores lane k of in[w] as word w of the row at address at(k), in the order of k.
 template <class Word, class At>
 inline void store_rows(const Word in[4], const At& at)
 {
-    static_assert(sizeof(Word) == 4 * lanes);
-#ifdef __AVX512F__
     __m512i words[4];
     std::memcpy(words, in, sizeof words);
     detail::store_transposed(words, [&](int k) { return reinterpret_cast<__m128i*>(at(k)); });
-#else
-    float words[4][lanes];
-    std::memcpy(words, in, sizeof words);
-    for (int k = 0; k < lanes; ++k) {
-        const float row[4] = {words[0][k], words[1][k], words[2][k], words[3][k]};
-        std::memcpy(at(k), row, sizeof row);
-    }
-#endif
 }
 
-/// The row of a pack of consecutive rows that is in lane k; see load_consecutive
-constexpr int row_of_lane(int k)
-{
-#ifdef __AVX512F__
-    return k % 4 * 4 + k / 4;
-#else
-    return k;
-#endif
-}
-
-/// Four words of `lanes` consecutive rows of 16 bytes; lane k has the row row_of_lane(k). Faster than
-/// load_rows. from is aligned to 64.
+constexpr int row_of_lane(int k) { return k % 4 * 4 + k / 4; }
 template <class Word, class Row>
 inline void load_consecutive(const Row* from, Word out[4])
 {
-    static_assert(sizeof(Row) == 16 && sizeof(Word) == 4 * lanes);
-#ifdef __AVX512F__
+    static_assert(sizeof(Row) == 16);
     __m512i a[4], words[4];
     for (int r = 0; r < 4; ++r) a[r] = _mm512_load_si512(from + 4 * r);
     detail::transpose(a, words);
     std::memcpy(out, words, sizeof words);
-#else
-    load_rows<Word, Row>([&](int k) { return from + k; }, out);
-#endif
 }
-/// The inverse of load_consecutive
 template <class Word, class Row>
 inline void store_consecutive(const Word in[4], Row* to)
 {
-    static_assert(sizeof(Row) == 16 && sizeof(Word) == 4 * lanes);
-#ifdef __AVX512F__
+    static_assert(sizeof(Row) == 16);
     __m512i words[4], a[4];
     std::memcpy(words, in, sizeof words);
     detail::transpose_back(words, a);
     for (int r = 0; r < 4; ++r) _mm512_store_si512(to + 4 * r, a[r]);
-#else
-    store_rows(in, [&](int k) { return to + k; });
-#endif
 }
 
-#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512VL__)
-/// Bit k of the result: flag k is not zero, k = 0 … lanes - 1
 inline unsigned flags(const std::uint8_t* from)
 {
     const __m128i f = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
     return _mm_test_epi8_mask(f, f);
 }
-/// Sets flag k to bit k.
 inline void set_flags(std::uint8_t* to, unsigned bits)
 {
     const __m128i ones = _mm_and_si128(_mm_movm_epi8(static_cast<__mmask16>(bits)), _mm_set1_epi8(1));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to), ones);
 }
-/// Sets flag k to bit k, for the set bits of `which`.
 inline void set_flags(std::uint8_t* to, unsigned bits, unsigned which)
 {
     const __m128i ones = _mm_and_si128(_mm_movm_epi8(static_cast<__mmask16>(bits)), _mm_set1_epi8(1));
     _mm_mask_storeu_epi8(to, static_cast<__mmask16>(which), ones);
 }
-/// a in the lanes of the set bits, b in the others
 inline Ints select(unsigned bits, Ints a, Ints b)
 {
     return {Ints::V(_mm512_mask_blend_epi32(static_cast<__mmask16>(bits), __m512i(b.v), __m512i(a.v)))};
 }
-/// Writes the words of the lanes of the set bits. It may overwrite up to `lanes` elements of `to`.
 template <class Word, class T>
 inline void compress(T* to, const Word& words, unsigned bits)
 {
     static_assert(sizeof(T) == 4);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), __m512i(words.v)));
 }
-/// The same for `lanes` numbers from `from` on
 inline void compress(double* to, const double* from, unsigned bits)
 {
     const __m512d low = _mm512_loadu_pd(from), high = _mm512_loadu_pd(from + 8);
@@ -177,8 +173,6 @@ inline void compress(double* to, const double* from, unsigned bits)
     _mm512_storeu_pd(to + __builtin_popcount(bits & 0xFF),
                      _mm512_maskz_compress_pd(static_cast<__mmask8>(bits >> 8), high));
 }
-/// Writes first + k for each set bit k; returns their number. It may overwrite up to `lanes` elements of
-/// `to`.
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
 {
     const __m512i numbers =
@@ -186,52 +180,6 @@ inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bit
                          _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), numbers));
     return static_cast<std::uint32_t>(__builtin_popcount(bits));
-}
-#else
-inline unsigned flags(const std::uint8_t* from)
-{
-    unsigned bits = 0;
-    for (int k = 0; k < lanes; ++k) bits |= (from[k] != 0 ? 1u : 0u) << k;
-    return bits;
-}
-inline void set_flags(std::uint8_t* to, unsigned bits)
-{
-    for (int k = 0; k < lanes; ++k) to[k] = bits >> k & 1;
-}
-inline void set_flags(std::uint8_t* to, unsigned bits, unsigned which)
-{
-    for (int k = 0; k < lanes; ++k)
-        if ((which >> k & 1) != 0) to[k] = bits >> k & 1;
-}
-inline Ints select(unsigned bits, Ints a, Ints b)
-{
-    for (int k = 0; k < lanes; ++k)
-        if ((bits >> k & 1) == 0) a.v[k] = b.v[k];
-    return a;
-}
-template <class Word, class T>
-inline void compress(T* to, const Word& words, unsigned bits)
-{
-    for (; bits != 0; bits &= bits - 1) *to++ = words.v[__builtin_ctz(bits)];
-}
-inline void compress(double* to, const double* from, unsigned bits)
-{
-    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
-}
-inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
-{
-    std::uint32_t n = 0;
-    for (; bits != 0; bits &= bits - 1) to[n++] = first + static_cast<std::uint32_t>(__builtin_ctz(bits));
-    return n;
-}
-#endif
-
-/// Bit k of the result: the highest bit of word k
-inline unsigned highest_bits(const std::uint32_t* words)
-{
-    PackMask m;
-    std::memcpy(&m, words, sizeof m);
-    return bits(m);
 }
 
 }  // namespace hilda::granular

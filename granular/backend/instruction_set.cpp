@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "granular/backend/instruction_set.hpp"
+
+#include "io/error.hpp"
+#include "io/nearest.hpp"
+
+#include <atomic>
+#include <cstdlib>
+
+using hilda::granular::CpuLoops;
+
+extern "C" {
+const CpuLoops* hilda_granular_loops_base();
+#ifdef HILDA_LOOPS_X86_64
+const CpuLoops* hilda_granular_loops_v3();
+const CpuLoops* hilda_granular_loops_v4();
+#endif
+}
+
+namespace hilda::granular {
+
+namespace {
+
+std::atomic<const InstructionSet*> chosen = nullptr;
+
+std::string list(bool only_available)
+{
+    std::string names;
+    for (const InstructionSet& set : instruction_sets())
+        if (!only_available || set.available()) names += (names.empty() ? "" : ", ") + std::string(set.name);
+    return names;
+}
+
+const InstructionSet& named(const std::string& name, const std::string& origin)
+{
+    for (const InstructionSet& set : instruction_sets()) {
+        if (name != set.name) continue;
+        if (!set.available())
+            throw io::NotAvailable(origin + ": this processor does not have " + set.name + " (" +
+                                   set.description + "); it has " + list(true));
+        return set;
+    }
+    throw io::UsageError(origin + ": must be one of " + list(false) + ", got '" + name + "'");
+}
+
+const InstructionSet& default_set()
+{
+    if (const char* const name = std::getenv("HILDA_ISA"); name != nullptr && *name != '\0')
+        return named(name, "HILDA_ISA");
+    const InstructionSet* widest = nullptr;
+    for (const InstructionSet& set : instruction_sets())
+        if (set.available()) widest = &set;
+    return *widest;
+}
+
+}  // namespace
+
+const std::vector<InstructionSet>& instruction_sets()
+{
+    static const auto always = [] { return true; };
+#ifdef HILDA_LOOPS_X86_64
+    static const std::vector<InstructionSet> sets = {
+        {"sse2", "x86-64, vectors of 128 bits", hilda_granular_loops_base, always},
+        {"v3", "x86-64-v3, AVX2", hilda_granular_loops_v3,
+         [] { return __builtin_cpu_supports("x86-64-v3") != 0; }},
+        {"v4", "x86-64-v4, AVX-512", hilda_granular_loops_v4,
+         [] { return __builtin_cpu_supports("x86-64-v4") != 0; }}};
+#else
+    static const std::vector<InstructionSet> sets = {
+        {"native", "the flags of this build", hilda_granular_loops_base, always}};
+#endif
+    return sets;
+}
+
+const InstructionSet& instruction_set()
+{
+    const InstructionSet* set = chosen.load(std::memory_order_acquire);
+    if (set == nullptr) chosen.store(set = &default_set(), std::memory_order_release);
+    return *set;
+}
+
+void choose_instruction_set(const std::string& name, const std::string& origin)
+{
+    chosen.store(&named(name, origin), std::memory_order_release);
+}
+
+}  // namespace hilda::granular

@@ -3,8 +3,15 @@
 #
 # CCACHE_SLOPPINESS is required with precompiled headers, which define macros and contain time stamps. CCACHE_BASEDIR and
 # CCACHE_NOHASHDIR make the cache keys independent of the folder of the clone.
+#
+# The first configuration of a build folder decides: a compiler that is called in another way would compile everything again.
 option(HILDA_CCACHE "Compile through ccache if it is installed" ON)
-find_program(HILDA_CCACHE_PROGRAM ccache)
+if(NOT DEFINED HILDA_CCACHE_PROGRAM)
+    find_program(HILDA_CCACHE_PROGRAM ccache)
+    if(NOT HILDA_CCACHE_PROGRAM)
+        set(HILDA_CCACHE_PROGRAM "" CACHE FILEPATH "ccache; empty if it was not installed at the first configuration" FORCE)
+    endif()
+endif()
 mark_as_advanced(HILDA_CCACHE_PROGRAM)
 if(HILDA_CCACHE AND HILDA_CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER

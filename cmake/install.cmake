@@ -57,19 +57,22 @@ function(hilda_component room)
     install(TARGETS hilda_${room}_library EXPORT hilda_${room}_targets OPTIONAL LIBRARY COMPONENT libraries NAMELINK_COMPONENT dev)
     install(EXPORT hilda_${room}_targets FILE hilda-${room}.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
 endfunction()
-hilda_component(granular
-    OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
-    PRIVATE OpenMP::OpenMP_CXX)
 hilda_component(reference
     OBJECTS $<TARGET_OBJECTS:reference_objects>
     PRIVATE GSL::gsl SUNDIALS::ida SUNDIALS::nvecserial SUNDIALS::sunmatrixsparse SUNDIALS::sunlinsolklu)
-hilda_component(studies
-    OBJECTS $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
-    PUBLIC hilda_reference_library hilda_granular_library
-    PRIVATE spdlog::spdlog Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
+if(TARGET granular_objects)
+    hilda_component(granular
+        OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
+        PRIVATE OpenMP::OpenMP_CXX hilda_granular_loops)
+    hilda_component(studies
+        OBJECTS $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
+        PUBLIC hilda_reference_library hilda_granular_library
+        PRIVATE Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
+endif()
 
-if(TARGET hilda_program)
-    install(TARGETS hilda_program hilda_granular_program RUNTIME COMPONENT programs)
+install(TARGETS hilda_program RUNTIME COMPONENT programs)
+if(TARGET hilda_granular_program)
+    install(TARGETS hilda_granular_program RUNTIME COMPONENT programs)
     # Man pages and completion, from the help texts
     if(HILDA_PYTHON AND NOT CMAKE_CROSSCOMPILING)
         set(commands "${PROJECT_BINARY_DIR}/commands")
@@ -87,7 +90,7 @@ if(TARGET hilda_program)
         endforeach()
     endif()
 endif()
-foreach(module hilda_mpi hilda_hdf5 hilda_urdf hilda_mjcf)
+foreach(module hilda_grains hilda_mpi hilda_hdf5 hilda_urdf hilda_mjcf)
     if(TARGET ${module})
         install(TARGETS ${module} LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/hilda" COMPONENT programs)
     endif()
@@ -123,31 +126,37 @@ hilda_install_headers(
         granular/world/boundary_drawing.hpp granular/world/double_world.hpp granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL
     EXCEPT studies/running/tables/hdf5_file.hpp studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
-install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"
-    DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/granular")
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
     DESTINATION "${hilda_package_dir}")
-# For programs with granular laws of their own (granular/program.cmake): the objects of hilda-granular that do not depend on the
-# laws, and the source of the others.
-include("${PROJECT_SOURCE_DIR}/granular/laws.cmake")
-list(TRANSFORM granular_law_files REPLACE "^.*/([^/]*)[.]cpp$" "\\1" OUTPUT_VARIABLE law_objects)
-list(JOIN law_objects "|" law_objects)
-set(law_objects "/(${law_objects})[.]cpp[.]o$")
-add_library(hilda_granular_parts STATIC $<TARGET_OBJECTS:io_objects>
-    "$<FILTER:$<TARGET_OBJECTS:granular_objects>,EXCLUDE,${law_objects}>"
-    "$<FILTER:$<TARGET_OBJECTS:hilda_granular_program>,EXCLUDE,${law_objects}>")
-set_target_properties(hilda_granular_parts PROPERTIES LINKER_LANGUAGE CXX)
-install(TARGETS hilda_granular_parts OPTIONAL)
-foreach(room io granular)
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source"
-        FILES_MATCHING REGEX "[.](hpp|cuh?|cmake|cpp[.]in)$" PATTERN benchmarks EXCLUDE PATTERN cases EXCLUDE)
-endforeach()
-foreach(file IN LISTS granular_law_files ITEMS backend/engine_no_gpu.cpp)
-    get_filename_component(folder "${file}" DIRECTORY)
-    install(FILES "${PROJECT_SOURCE_DIR}/granular/${file}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/granular/${folder}")
-endforeach()
-install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/hilda")
+if(TARGET granular_objects)
+    install(FILES "${PROJECT_BINARY_DIR}/granular/generated/granular/force_models.hpp"
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/granular")
+    # For programs with granular laws of their own (granular/program.cmake): the objects of hilda-granular that do not depend on the
+    # laws, and the source of the others.
+    include("${PROJECT_SOURCE_DIR}/granular/laws.cmake")
+    list(TRANSFORM granular_law_files REPLACE "^.*/([^/]*)[.]cpp$" "\\1" OUTPUT_VARIABLE law_objects)
+    list(JOIN law_objects "|" law_objects)
+    set(law_objects "/(${law_objects})[.]cpp[.]o$")
+    add_library(hilda_granular_parts STATIC $<TARGET_OBJECTS:io_objects>
+        "$<FILTER:$<TARGET_OBJECTS:granular_objects>,EXCLUDE,${law_objects}>"
+        "$<FILTER:$<TARGET_OBJECTS:hilda_granular_program>,EXCLUDE,${law_objects}>")
+    set_target_properties(hilda_granular_parts PROPERTIES LINKER_LANGUAGE CXX)
+    install(TARGETS hilda_granular_parts OPTIONAL)
+    foreach(room io granular)
+        install(DIRECTORY "${PROJECT_SOURCE_DIR}/${room}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source"
+            FILES_MATCHING REGEX "[.](hpp|cuh?|cmake|cpp[.]in)$" PATTERN benchmarks EXCLUDE PATTERN cases EXCLUDE)
+    endforeach()
+    include("${PROJECT_SOURCE_DIR}/granular/loops.cmake")
+    granular_can_dispatch(granular_dispatch)
+    set(granular_source_files ${granular_law_files} ${granular_loop_files} backend/engine_no_gpu.cpp)
+    list(REMOVE_DUPLICATES granular_source_files)
+    foreach(file IN LISTS granular_source_files)
+        get_filename_component(folder "${file}" DIRECTORY)
+        install(FILES "${PROJECT_SOURCE_DIR}/granular/${file}" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/granular/${folder}")
+    endforeach()
+    install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda/source/hilda")
+endif()
 install(FILES "${PROJECT_SOURCE_DIR}/dae/model.schema.json" "${PROJECT_SOURCE_DIR}/granular/case.schema.json"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" COMPONENT programs OPTIONAL)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INSTALL_DATADIR}/hilda" COMPONENT programs OPTIONAL

@@ -38,7 +38,7 @@ set(CPACK_DEBIAN_LIBRARIES_PACKAGE_GENERATE_SHLIBS ON)
 hilda_deb(dev libhilda-dev "Headers and CMake package of HILDA, and the sources for granular laws")
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libhilda${soname} (= ${PROJECT_VERSION}), libeigen3-dev, libsuitesparse-dev, libfmt-dev, libcli11-dev, nlohmann-json3-dev, libspdlog-dev")
+    "libhilda${soname} (= ${PROJECT_VERSION}), libeigen3-dev, libsuitesparse-dev, libfmt-dev, libcli11-dev")
 hilda_deb(python python3-hilda "Python packages hilda and hilda_granular")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib")

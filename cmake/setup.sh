@@ -12,10 +12,13 @@ mkdir -p -- "$hilda_log_dir"
 
 hilda_jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 
-# Packages of Debian 12 for the programs. tests/run adds those of the tests.
-hilda_packages=(g++ cmake ninja-build git libeigen3-dev libsuitesparse-dev libgsl-dev libsundials-dev libcli11-dev
-    nlohmann-json3-dev libfmt-dev libspdlog-dev libthrust-dev libcub-dev libhdf5-dev python3 python3-matplotlib libjs-three
-    libbenchmark-dev libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev liburdfdom-dev libmujoco-dev)
+# Packages of Debian 12 for the program hilda and its figures.
+hilda_packages=(g++ cmake ninja-build git libeigen3-dev libsuitesparse-dev libgsl-dev libsundials-dev libcli11-dev libfmt-dev
+    python3 python3-matplotlib)
+
+# Packages for grains and for the modules: HDF5, MPI, URDF, MJCF, pages of hilda view.
+hilda_module_packages=(libthrust-dev libcub-dev libhdf5-dev libopenmpi-dev openmpi-bin libtrilinos-zoltan-dev liburdfdom-dev
+    libmujoco-dev libjs-three)
 
 # Packages for the documentation site (docs/build).
 hilda_site_packages=(python3-numpy python3-sphinx python3-myst-parser python3-breathe python3-sphinx-copybutton furo doxygen
@@ -121,11 +124,10 @@ hilda_get_packages() {
 hilda_configure() { # PRESET [CMAKE_ARGUMENT...]
     local preset=$1 code=0
     hilda_begin "configure $preset"
-    # An existing build folder keeps its generator.
-    if command -v ninja >/dev/null && [[ ! -e $hilda_root/build/$preset/CMakeCache.txt ]]; then
-        export CMAKE_GENERATOR=Ninja
-    else
-        unset CMAKE_GENERATOR
+    local cache=$hilda_root/build/$preset/CMakeCache.txt
+    if [[ -e $cache ]] && ! grep -q '^CMAKE_GENERATOR:INTERNAL=Ninja$' "$cache"; then
+        hilda_end failed
+        hilda_die 1 "build/$preset was configured with $(sed -n 's/^CMAKE_GENERATOR:INTERNAL=//p' "$cache"), and the presets use Ninja; remove the folder: rm -r build/$preset"
     fi
     # env -C instead of cd: the program that runs next resolves its paths in the user's folder.
     hilda_logged "configure-$preset.log" env -C "$hilda_root" cmake --preset "$@" || code=$?

@@ -68,17 +68,6 @@ std::string vector_text(const lie::Vec3& a)
 
 }  // namespace
 
-bool is_cosim_file(const std::string& path)
-{
-    if (!is_model_path(path)) return false;
-    try {
-        const io::JsonSource source(io::read_file(path, io::JsonSource::max_bytes), path);
-        return source.root.member("hilda_cosim") != nullptr;
-    } catch (const io::Failure&) {
-        return false;
-    }
-}
-
 int check_cosim(const CheckOptions& o)
 {
     if (o.fix_initial || !o.write.empty() || !o.normal_rows.empty())

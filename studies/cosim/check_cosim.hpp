@@ -7,9 +7,6 @@
 
 namespace hilda::studies {
 
-/// Whether a path is that of a JSON file with the key "hilda_cosim"
-bool is_cosim_file(const std::string& path);
-
 /// Reads the model and the case of the file, compares them, and prints the steps and the stability limit of
 /// each body, without a simulation. Returns the exit code. Throws io::InvalidInput for invalid or
 /// inconsistent files and for a step above the stability limit, and io::UsageError for options that are

@@ -4,6 +4,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/object_reader.hpp"
+#include "studies/running/named_model.hpp"
 #include "studies/running/run_settings.hpp"
 
 #include <filesystem>
@@ -56,6 +57,17 @@ CosimFile read_cosim(const std::string& path, const std::vector<std::string>& se
                            f.pairs[k].boundary + "'");
     o.finish();
     return f;
+}
+
+bool is_cosim_file(const std::string& path)
+{
+    if (!is_model_path(path)) return false;
+    try {
+        const io::JsonSource source(io::read_file(path, io::JsonSource::max_bytes), path);
+        return source.root.member("hilda_cosim") != nullptr;
+    } catch (const io::Failure&) {
+        return false;
+    }
 }
 
 }  // namespace hilda::studies

@@ -33,4 +33,7 @@ struct CosimFile {
 /// Reads a file. Throws io::InvalidInput with file, line, column and JSON pointer.
 CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set = {});
 
+/// Whether a path is that of a JSON file with the key "hilda_cosim"
+bool is_cosim_file(const std::string& path);
+
 }  // namespace hilda::studies

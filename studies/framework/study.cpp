@@ -48,8 +48,9 @@ void refuse_unused_settings(const std::string& where, const std::vector<std::str
 
 const std::vector<Study>& studies()
 {
-    for (const Maker make : std::exchange(makers(), {}))
-        for (Study& study : make()) io::Registry<Study>::add(std::move(study));
+    while (!makers().empty())  // a maker may load a module that registers others
+        for (const Maker make : std::exchange(makers(), {}))
+            for (Study& study : make()) io::Registry<Study>::add(std::move(study));
     return io::Registry<Study>::all();
 }
 

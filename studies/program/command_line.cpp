@@ -2,8 +2,8 @@
 #include "studies/program/command_line.hpp"
 
 #include "io/error.hpp"
-#include "studies/cosim/check_cosim.hpp"
-#include "studies/cosim/run_cosim.hpp"
+#include "studies/cosim/cosim_file.hpp"
+#include "studies/cosim/grains.hpp"
 #include "studies/distribution/communicator.hpp"
 #include "studies/importing/export_urdf.hpp"
 #include "studies/importing/import_model.hpp"
@@ -131,7 +131,7 @@ private:
     {
         cosim.run.command_line = command_line_text;
         add_cosim_options(*add("cosim", "simulate a mechanism and grains that act on each other",
-                               [this] { return run_cosim(cosim); }),
+                               [this] { return grains("cosim").run_cosim(cosim); }),
                           cosim);
     }
 
@@ -156,10 +156,12 @@ private:
 
     void add_check()
     {
-        add_check_options(
-            *add("check", "validate a model or a co-simulation file and print its properties",
-                 [this] { return is_cosim_file(check.model) ? check_cosim(check) : check_model(check); }),
-            check);
+        add_check_options(*add("check", "validate a model or a co-simulation file and print its properties",
+                               [this] {
+                                   return is_cosim_file(check.model) ? grains("check").check_cosim(check)
+                                                                     : check_model(check);
+                               }),
+                          check);
     }
 
     void add_models()

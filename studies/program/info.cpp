@@ -6,6 +6,7 @@
 #include "io/provenance.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
+#include "studies/cosim/grains.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/running/plot.hpp"
@@ -41,6 +42,10 @@ int info(bool json, const std::string& command_line)
     all["devices"] = devices;
     const std::string figures = python_and_matplotlib();
     all["figures"] = figures;
+    const GrainFunctions* const of_grains = find_grains("info");
+    const std::string vectors =
+        of_grains != nullptr ? of_grains->vector_instructions() : "the module hilda-grains was not built";
+    all["vector_instructions_of_grains"] = vectors;
     if (json) {
         std::cout << all.text();
         return io::exit_code::done;
@@ -57,6 +62,7 @@ int info(bool json, const std::string& command_line)
     line("libraries", versions);
     line("system", system_name());
     line("processor", fmt::format("{}, {} threads", io::processor(), cores));
+    line("grains", vectors);
     line("devices", devices);
     line("figures", figures);
     line("registered", fmt::format("{} integrators, {} models, {} studies", lie::schemes().size(),

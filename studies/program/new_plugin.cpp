@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/new_plugin.hpp"
 
-#include "granular/case/law_names.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
+#include "studies/cosim/grains.hpp"
 
 #include <fmt/format.h>
 
@@ -26,14 +26,14 @@ namespace {
 
 /// A file of a new plug-in. In its name and in its text, my-scheme or my-law, my_law and MyLaw stand for the
 /// name.
-struct NewFile {
+struct FileToWrite {
     std::string name;
     const char* text;
 };
 
 struct Kind {
     std::string name, word;
-    std::vector<NewFile> files;
+    std::vector<FileToWrite> files;
     const char* commands;  ///< {0}: directory, {1}: name
 };
 
@@ -88,7 +88,7 @@ void check_name(const Kind& kind, const std::string& name)
             "new: NAME must begin with a letter and contain letters, digits, - and _ only, got '" + name +
             "'");
     if (kind.name == "granular-law") {
-        const std::vector<std::string> laws = granular::law_names("normal");
+        const std::vector<std::string> laws = grains("new granular-law").law_names("normal");
         if (std::find(laws.begin(), laws.end(), name) != laws.end())
             throw io::UsageError("new: there is a normal law '" + name + "'; choose another name");
         return;
@@ -133,7 +133,7 @@ int new_plugin(const std::string& kind_name, const std::string& name, const std:
     check_name(kind, name);
     const std::string directory = output.empty() ? name : output;
     io::check_output_directory(directory, false, "choose another --output");
-    for (const NewFile& file : kind.files) {
+    for (const FileToWrite& file : kind.files) {
         const auto named = [&](std::string text) {
             text = replaced(std::move(text), in_camel_case(kind.word), in_camel_case(name));
             text = replaced(std::move(text), with_underscores(kind.word), with_underscores(name));

@@ -3,6 +3,7 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
+#include "studies/cosim/grains.hpp"
 #include "studies/distribution/ranks.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
@@ -118,6 +119,7 @@ const Study& find_study(const std::string& kind)
         if (study.name == kind) return study;
         known.push_back(study.name);
     }
+    if (kind.starts_with("granular-")) grains("study " + kind);  // says what is missing
     throw io::UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
 

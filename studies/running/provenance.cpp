@@ -32,7 +32,8 @@ std::string build_line()
 std::string modules_line()
 {
     std::string present, missing;
-    for (const auto& [name, file] : {std::pair{"HDF5", "hilda-hdf5.so"},
+    for (const auto& [name, file] : {std::pair{"grains", "hilda-grains.so"},
+                                     {"HDF5", "hilda-hdf5.so"},
                                      {"MPI", "hilda-mpi.so"},
                                      {"URDF", "hilda-urdf.so"},
                                      {"MJCF", "hilda-mjcf.so"}}) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads hilda-grains.so.
+#include "studies/cosim/grains.hpp"
+
+#include "io/error.hpp"
+#include "io/module.hpp"
+#include "studies/framework/study.hpp"
+
+/// Defined in programs that link grains (grains_module.cpp)
+extern "C" __attribute__((weak)) const hilda::studies::GrainFunctions* hilda_grain_functions();
+
+namespace hilda::studies {
+
+const GrainFunctions* find_grains(const std::string& what)
+{
+    if (hilda_grain_functions != nullptr) return hilda_grain_functions();
+    void* const symbol = io::module_symbol(what,
+                                           {.name = "hilda-grains.so",
+                                            .library_folder = HILDA_LIBRARY_FOLDER,
+                                            .caller = reinterpret_cast<const void*>(&find_grains)},
+                                           "hilda_grain_functions");
+    return symbol == nullptr ? nullptr : reinterpret_cast<const GrainFunctions* (*)()>(symbol)();
+}
+
+const GrainFunctions& grains(const std::string& what)
+{
+    const GrainFunctions* const found = find_grains(what);
+    if (found == nullptr)
+        throw io::NotAvailable(
+            what +
+            ": needs the module hilda-grains.so, which was not built; build it (cmake --build "
+            "build/release --target hilda_grains), or install the Debian package hilda");
+    return *found;
+}
+
+namespace {
+
+/// The studies of the module register themselves when it is loaded.
+std::vector<Study> load_studies()
+{
+    find_grains("studies of grains");
+    return {};
+}
+
+const bool registered_grains = register_studies(load_studies);
+
+}  // namespace
+
+}  // namespace hilda::studies

@@ -96,7 +96,8 @@ void add_contacts(io::Json& definitions)
     add_fallback(definitions);
 }
 
-const bool registered = io::Registry<dae::SchemaPart>::add({.name = "contacts", .add = add_contacts});
+const bool registered_contact_schema =
+    io::Registry<dae::SchemaPart>::add({.name = "contacts", .add = add_contacts});
 
 }  // namespace
 

@@ -239,7 +239,7 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
                                                    read_friction(o, *law)));
 }
 
-const bool registered = dae::register_contact_reader(read_contact);
+const bool registered_model_contacts = dae::register_contact_reader(read_contact);
 
 }  // namespace
 

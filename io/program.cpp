@@ -34,7 +34,7 @@ std::size_t last_message_length = 0;
 
 extern "C" void end_with_message(int signal)
 {
-    if (last_message_length > 0 && write(STDERR_FILENO, last_message, last_message_length) < 0) {
+    if (last_message_length > 0 && ::write(STDERR_FILENO, last_message, last_message_length) < 0) {
     }
     _exit(128 + signal);
 }

@@ -11,9 +11,9 @@ namespace hilda::lie {
 namespace {
 
 constexpr int max_iterations = 100;
-constexpr double tolerance = 1e-11;  // of min(q, s)
-constexpr double accepted = 1e-3;    // if the tolerance is not reached
-constexpr double largest_step = 3;   // of q = ln p in one iteration of Newton's method
+constexpr double residual_tolerance = 1e-11;  // of min(q, s)
+constexpr double accepted = 1e-3;             // if the tolerance is not reached
+constexpr double largest_step = 3;            // of q = ln p in one iteration of Newton's method
 constexpr int max_halvings = 4;
 
 double normal_force(const BoundedPair& c, const Eigen::Ref<const Eigen::VectorXd>& lambda)
@@ -131,7 +131,8 @@ bool CoupledBounds::solve(Saddle& K, Eigen::VectorXd& z, const std::vector<Bound
         q[k] = std::log(c.p);
     }
     evaluate();
-    for (int k = 0; k < max_iterations && residual.allFinite() && !(largest_residual() < tolerance); ++k) {
+    for (int k = 0; k < max_iterations && residual.allFinite() && !(largest_residual() < residual_tolerance);
+         ++k) {
         if (newton_step()) continue;
         q = (q - s).cwiseMax(0);
         evaluate();

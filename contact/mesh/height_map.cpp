@@ -206,7 +206,7 @@ Vec3 HeightMap::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_height_map = io::Registry<SurfaceType>::add(
     {.name = "height-map",
      .schema =
          {.description = "Terrain z = f(x, y) through samples on a regular grid, interpolated by a bicubic "

@@ -66,18 +66,18 @@ std::vector<int> neighbours(const TriangleMesh& mesh, int vertex, double distanc
     return found;
 }
 
-constexpr const char* where = "contact::MeshSurface: ";
+constexpr const char* mesh_surface = "contact::MeshSurface: ";
 
 [[noreturn]] void refuse(const std::string& what)
 {
-    throw lie::InvalidInput(where + ("the mesh is too coarse for a smooth surface: " + what));
+    throw lie::InvalidInput(mesh_surface + ("the mesh is too coarse for a smooth surface: " + what));
 }
 
 [[noreturn]] void refuse_narrow(int vertex, size_t known, double R)
 {
     std::ostringstream what;
     what.precision(3);
-    what << where << "the triangles near vertex " << vertex << " are too narrow: " << known
+    what << mesh_surface << "the triangles near vertex " << vertex << " are too narrow: " << known
          << " vertices are within " << R << " m, " << fit_reach << " times its longest edge; the limit is "
          << max_vertices;
     throw lie::InvalidInput(what.str());
@@ -294,8 +294,9 @@ std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
         throw;
     } catch (const lie::InvalidInput& e) {
         const std::string what = e.what();
-        o.fail("file",
-               what.starts_with(where) ? path + ": " + what.substr(std::string_view(where).size()) : what);
+        o.fail("file", what.starts_with(mesh_surface)
+                           ? path + ": " + what.substr(std::string_view(mesh_surface).size())
+                           : what);
     }
 }
 
@@ -326,11 +327,11 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
         return std::make_shared<MeshSurface>(TriangleMesh(std::move(vertices), std::move(triangles)),
                                              concave);
     } catch (const lie::InvalidInput& e) {
-        o.fail("vertices", std::string(e.what()).substr(std::string_view(where).size()));
+        o.fail("vertices", std::string(e.what()).substr(std::string_view(mesh_surface).size()));
     }
 }
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_mesh_surface = io::Registry<SurfaceType>::add(
     {.name = "mesh",
      .schema =
          {.description = "Closed triangle mesh, smoothed by cubic patches fitted at its vertices, so that "

@@ -13,12 +13,12 @@ GivenForce::GivenForce(double N) : N(N)
 
 namespace {
 
-std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
+std::shared_ptr<const NormalLaw> read_given_force(dae::ObjectReader& o)
 {
     return std::make_shared<GivenForce>(o.not_negative("force"));
 }
 
-const bool registered = io::Registry<NormalLawType>::add(
+const bool registered_given_force = io::Registry<NormalLawType>::add(
     {.name = "given",
      .schema = {.description = "Prescribed constant normal force, independent of the overlap. It models "
                                "surfaces that are pressed together by a known force.",
@@ -26,7 +26,7 @@ const bool registered = io::Registry<NormalLawType>::add(
                           R"("type": "number", "minimum": 0, "examples": [9.81])", true},
                          dae::note_key},
                 .example = R"("force": 9.81)"},
-     .read = read,
+     .read = read_given_force,
      .elastic = false});
 
 }  // namespace

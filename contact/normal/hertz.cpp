@@ -50,7 +50,7 @@ double poisson_ratio(dae::ObjectReader& o, std::string_view key)
     return nu;
 }
 
-std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
+std::shared_ptr<const NormalLaw> read_hertz(dae::ObjectReader& o)
 {
     for (const char* key : {"E_i", "nu_i", "E_j", "nu_j"}) o.exclude("E_star", key);
     double E_star = 0;
@@ -64,7 +64,7 @@ std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
     return std::make_shared<Hertz>(E_star, o.fraction("restitution", 1));
 }
 
-const bool registered = io::Registry<NormalLawType>::add(
+const bool registered_hertz = io::Registry<NormalLawType>::add(
     {.name = "hertz",
      .schema =
          {.description =
@@ -91,7 +91,7 @@ const bool registered = io::Registry<NormalLawType>::add(
                   R"("dependentSchemas": {"E_star": {"allOf": [{"not": {"required": ["E_i"]}}, {"not": )"
                   R"({"required": ["nu_i"]}}, {"not": {"required": ["E_j"]}}, {"not": {"required": )"
                   R"(["nu_j"]}}]}})"},
-     .read = read});
+     .read = read_hertz});
 
 }  // namespace
 

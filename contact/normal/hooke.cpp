@@ -30,7 +30,7 @@ double Hooke::force(const NormalInput& p) const
 
 namespace {
 
-std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
+std::shared_ptr<const NormalLaw> read_hooke(dae::ObjectReader& o)
 {
     o.exclude("damping", "restitution");
     const double stiffness = o.positive("stiffness");
@@ -39,7 +39,7 @@ std::shared_ptr<const NormalLaw> read(dae::ObjectReader& o)
     return std::make_shared<Hooke>(stiffness, o.not_negative("damping", 0));
 }
 
-const bool registered = io::Registry<NormalLawType>::add(
+const bool registered_hooke = io::Registry<NormalLawType>::add(
     {.name = "hooke",
      .schema = {.description =
                     "Linear spring and damper: N = k delta + c deltadot for overlap delta > 0 (Fang 2022, "
@@ -55,7 +55,7 @@ const bool registered = io::Registry<NormalLawType>::add(
                          dae::note_key},
                 .example = R"("stiffness": 1e5, "restitution": 0.5)",
                 .rest = R"("not": {"required": ["damping", "restitution"]})"},
-     .read = read});
+     .read = read_hooke});
 
 }  // namespace
 

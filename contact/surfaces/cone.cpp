@@ -60,7 +60,7 @@ Vec3 Cone::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_cone = io::Registry<SurfaceType>::add(
     {.name = "cone",
      .schema =
          {.description = "Infinite circular cone. Its apex is at the origin of the surface frame and it "

@@ -38,7 +38,7 @@ PolygonMesh Cylinder::drawing(const DrawingExtent& extent) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_cylinder = io::Registry<SurfaceType>::add(
     {.name = "cylinder",
      .schema = {.description = "Infinite circular cylinder about z.",
                 .parts = {"pose_by_axis"},

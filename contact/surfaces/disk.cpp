@@ -39,7 +39,7 @@ PolygonMesh Disk::drawing(const DrawingExtent&) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_disk = io::Registry<SurfaceType>::add(
     {.name = "disk",
      .schema = {.description = "Thin disk that touches with its rim: the circle about z in the plane z = 0 "
                                "of the surface frame. The other surface must be a plane.",

@@ -65,7 +65,7 @@ Vec3 Ellipsoid::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_ellipsoid = io::Registry<SurfaceType>::add(
     {.name = "ellipsoid",
      .schema =
          {.description = "Ellipsoid with its centre at the origin of the surface frame.",

@@ -15,7 +15,7 @@ PolygonMesh Foot::drawing(const DrawingExtent& extent) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_foot = io::Registry<SurfaceType>::add(
     {.name = "foot",
      .schema =
          {.description =

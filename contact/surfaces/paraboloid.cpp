@@ -67,7 +67,7 @@ Vec3 Paraboloid::project(const Vec3& a) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_paraboloid = io::Registry<SurfaceType>::add(
     {.name = "paraboloid",
      .schema =
          {.description = "Paraboloid z = (x^2/R_x + y^2/R_y)/2 with its vertex at the origin of the surface "

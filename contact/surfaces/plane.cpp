@@ -13,7 +13,7 @@ PolygonMesh Plane::drawing(const DrawingExtent& extent) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_plane = io::Registry<SurfaceType>::add(
     {.name = "plane",
      .schema = {.description = "Plane through the origin of the surface frame with the outward normal z.",
                 .parts = {"pose_by_normal"},

@@ -94,7 +94,7 @@ std::optional<Vec3> Quadric::support(const Vec3& u) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_quadric = io::Registry<SurfaceType>::add(
     {.name = "quadric",
      .schema = {.description = "Surface G = a^T Q a + 2 b . a + c = 0 of the second degree, with a in the "
                                "surface frame. The material is where G is negative.",

@@ -25,7 +25,7 @@ double Sphere::arc(double chord) const { return 2 * R * std::asin(std::min(chord
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_sphere = io::Registry<SurfaceType>::add(
     {.name = "sphere",
      .schema = {.description = "Sphere with its centre at the origin of the surface frame.",
                 .parts = {"pose"},

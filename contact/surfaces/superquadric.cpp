@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* where = "contact::Superquadric";
 
-const Vec3& positive_axes(const Vec3& semi_axes)
+const Vec3& positive_semi_axes(const Vec3& semi_axes)
 {
     for (double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()})
         positive(where, "a semi-axis of a superquadric", a);
@@ -32,7 +32,7 @@ double checked_exponent(double p)
 }  // namespace
 
 Superquadric::Superquadric(const Vec3& semi_axes, double p, double q)
-    : semi_axes(positive_axes(semi_axes)), p(checked_exponent(p)), q(checked_exponent(q)),
+    : semi_axes(positive_semi_axes(semi_axes)), p(checked_exponent(p)), q(checked_exponent(q)),
       L(std::cbrt(semi_axes.prod())), scale(L / std::max(p, q))
 {}
 
@@ -90,7 +90,7 @@ std::optional<Vec3> Superquadric::support(const Vec3& u) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_superquadric = io::Registry<SurfaceType>::add(
     {.name = "superquadric",
      .schema =
          {.description = "Superquadric |x/a|^p + |y/b|^p + |z/c|^q = 1: an ellipsoid for p = q = 2; a box "

@@ -72,7 +72,7 @@ PolygonMesh Torus::drawing(const DrawingExtent&) const
 
 namespace {
 
-const bool registered = io::Registry<SurfaceType>::add(
+const bool registered_torus = io::Registry<SurfaceType>::add(
     {.name = "torus",
      .schema = {.description = "Torus about z: a tube along a circle in the plane z = 0 of the surface "
                                "frame. The tube must be thinner than the ring.",

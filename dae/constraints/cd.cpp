@@ -8,7 +8,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_cd = {
     .description =
         "Coordinate-difference constraint, one row: c . d_ij = f(t) (Fang 2022, Eq. 2.5d). d_ij is "
         "the vector from point P to point Q. It prescribes one coordinate of Q relative to P.",
@@ -19,9 +19,9 @@ const TypeSchema schema = {
               R"("$ref": "#/$defs/motion", "default": "0", "examples": ["0.2*t"])"}},
     .example = R"("body_i": "ground", "body_j": "slider", "c": [1, 0, 0], "f": "0.2*t")"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_cd = io::Registry<ConstraintType>::add(
     {.name = "CD",
-     .schema = schema,
+     .schema = schema_cd,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Vec3 c = o.direction("c");
          const Points s(o);

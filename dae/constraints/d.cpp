@@ -8,7 +8,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_d = {
     .description =
         "Distance constraint, one row: d_ij . d_ij = f(t) (Fang 2022, Eq. 2.5c). d_ij is the vector "
         "from point P to point Q.",
@@ -20,9 +20,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
                R"("f": 0.25)"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_d = io::Registry<ConstraintType>::add(
     {.name = "D",
-     .schema = schema,
+     .schema = schema_d,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          return single_row(D(i, s.i, j, s.j, read_driver(o, "f")));

@@ -8,7 +8,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_dp1 = {
     .description =
         "First dot-product constraint, one row: a_i . a_j = f(t) (Fang 2022, Eq. 2.5a). It "
         "prescribes the angle between a vector of body i and a vector of body j. It loses rank if "
@@ -24,9 +24,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [1, 0, 0], )"
                R"-("a_bar_j": [0, 1, 0], "f": "sin(0.1*t)")-"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_dp1 = io::Registry<ConstraintType>::add(
     {.name = "DP1",
-     .schema = schema,
+     .schema = schema_dp1,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          return single_row(
              DP1{i, o.direction("a_bar_i"), j, o.direction("a_bar_j"), read_driver(o, "f", "0")});

@@ -8,7 +8,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_dp2 = {
     .description =
         "Second dot-product constraint, one row: a_i . d_ij = f(t) (Fang 2022, Eq. 2.5b). d_ij is "
         "the vector from point P to point Q.",
@@ -20,9 +20,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [0, 0, 1], )"
                R"("s_bar_p_i": [0, 0.1, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_dp2 = io::Registry<ConstraintType>::add(
     {.name = "DP2",
-     .schema = schema,
+     .schema = schema_dp2,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Vec3 a_bar_i = o.direction("a_bar_i");
          const Points s(o);

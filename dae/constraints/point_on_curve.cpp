@@ -121,7 +121,7 @@ int PointOnCurve::update_internal_state(const Arguments& x, bool start, double* 
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_point_on_curve = {
     .description =
         "Point on a curve, 2 rows: point P of body i stays on a curve that is fixed in body j and given "
         "by its coordinates as functions of a parameter s. The curve must be smooth and have a tangent "
@@ -140,9 +140,9 @@ const TypeSchema schema = {
               R"("type": "number", "default": 0, "examples": [1.5])"}},
     .example = R"-("body_i": "bead", "body_j": "ground", "curve": ["cos(s)", "sin(s)", 0], "s": 0.5)-"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_point_on_curve = io::Registry<ConstraintType>::add(
     {.name = "point-on-curve",
-     .schema = schema,
+     .schema = schema_point_on_curve,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Vec3 s_bar_i = o.vec3("s_bar_p_i", Vec3::Zero());
          std::array<io::Expression, 3> curve = o.expressions("curve", {"s"});

@@ -204,7 +204,7 @@ void Bushing::values(const State& x, double* out) const
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_bushing = {
     .description =
         "Bushing: a linear spring and damper with three translational and three rotational components. The "
         "deflection is the vector from P to Q and the rotation vector of body j relative to body i since "
@@ -231,9 +231,9 @@ Vec3 not_negative(ObjectReader& o, const char* key, const std::optional<Vec3>& f
     return k;
 }
 
-const bool registered = io::Registry<ForceType>::add(
+const bool registered_bushing = io::Registry<ForceType>::add(
     {.name = "bushing",
-     .schema = schema,
+     .schema = schema_bushing,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);

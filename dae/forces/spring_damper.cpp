@@ -54,7 +54,7 @@ bool SpringDamper::load_derivatives(const State& x, LoadDerivatives& out) const
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_spring_damper = {
     .description =
         "Spring, damper and actuator between points P and Q. The force k (l - l_0) + c ldot + F acts "
         "along the line from P to Q; l is the distance of the points. A positive force pulls the "
@@ -73,9 +73,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "ground", "body_j": "slider", "stiffness": 1000, )"
                R"("damping": 10, "free_length": 0.3)"};
 
-const bool registered = io::Registry<ForceType>::add(
+const bool registered_spring_damper = io::Registry<ForceType>::add(
     {.name = "spring-damper",
-     .schema = schema,
+     .schema = schema_spring_damper,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);

@@ -8,7 +8,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_torsion_spring = {
     .description =
         "Torsional spring and damper about the common axis of two bodies. The torque k (theta - "
         "theta_0) + c thetadot acts on body i about the axis, the opposite torque on body j. theta "
@@ -25,9 +25,9 @@ const TypeSchema schema = {
                R"("axis_bar_j": [1, 0, 0], "stiffness": 5, )"
                R"("free_angle": 0)"};
 
-const bool registered = io::Registry<ForceType>::add(
+const bool registered_torsion_spring = io::Registry<ForceType>::add(
     {.name = "torsion-spring",
-     .schema = schema,
+     .schema = schema_torsion_spring,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Axes axis(o);

@@ -18,7 +18,7 @@ Blocks cylindrical(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, co
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_cylindrical = {
     .description =
         "Cylindrical joint, 4 rows: the axis through P and the axis through Q are collinear. Body j "
         "can slide along the common axis and rotate about it.",
@@ -26,9 +26,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_cylindrical = io::Registry<ConstraintType>::add(
     {.name = "cylindrical",
-     .schema = schema,
+     .schema = schema_cylindrical,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

@@ -20,7 +20,7 @@ Blocks distance(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, double l
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_distance = {
     .description =
         "Distance joint, one row: points P and Q stay at a constant distance. It models a rigid link "
         "without mass.",
@@ -29,9 +29,9 @@ const TypeSchema schema = {
               R"("type": "number", "exclusiveMinimum": 0, "examples": [0.5])", true}},
     .example = R"("body_i": "crank", "body_j": "rod", "length": 0.5)"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_distance = io::Registry<ConstraintType>::add(
     {.name = "distance",
-     .schema = schema,
+     .schema = schema_distance,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          return distance(i, s.i, j, s.j, o.positive("length"));

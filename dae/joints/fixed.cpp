@@ -20,13 +20,13 @@ Blocks fixed(int i, int j, const State& x)
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_fixed = {
     .description = "Fixed joint, 6 rows: the relative position and orientation keep their initial values.",
     .example = R"("body_i": "crank", "body_j": "rod")"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_fixed = io::Registry<ConstraintType>::add(
     {.name = "fixed",
-     .schema = schema,
+     .schema = schema_fixed,
      .read = [](ObjectReader&, int i, int j, const State& x) -> ConstraintType::Constraints {
          return fixed(i, j, x);
      }});

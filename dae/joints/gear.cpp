@@ -108,7 +108,7 @@ Blocks gear(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, double R_i, int 
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_gear = {
     .description =
         "Gear pair, one row: the pitch circles of two gears with parallel axes roll on each other without "
         "slip. The circle of body i has the centre P, that of body j the centre Q. Add revolute joints "
@@ -125,9 +125,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "pinion", "body_j": "wheel", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0], "radius_i": 0.1, "radius_j": 0.2)"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_gear = io::Registry<ConstraintType>::add(
     {.name = "gear",
-     .schema = schema,
+     .schema = schema_gear,
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

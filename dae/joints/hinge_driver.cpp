@@ -31,7 +31,7 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_hinge_driver = {
     .description =
         "Rotational driver, one row: body j rotates about the axis of body i by angle(t) - angle(0) "
         "relative to its initial orientation. The angle is counted through whole turns. Use it "
@@ -43,9 +43,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "ground", "body_j": "crank", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0], "angle": "2*pi*t")"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_hinge_driver = io::Registry<ConstraintType>::add(
     {.name = "hinge-driver",
-     .schema = schema,
+     .schema = schema_hinge_driver,
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Axes axis(o);
          return hinge_driver(i, axis.i, j, axis.j, read_driver(o, "angle"), x);

@@ -18,16 +18,16 @@ Blocks planar(int i, const Vec3& s_bar_i, const Vec3& normal_bar_i, int j, const
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_planar = {
     .description =
         "Planar joint, 3 rows: point Q stays in the plane through P that is perpendicular to the axis of "
         "body i, and the axes stay parallel. Body j can slide in the plane and rotate about its normal.",
     .parts = {"points", "axes"},
     .example = R"("body_i": "ground", "body_j": "disk", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_planar = io::Registry<ConstraintType>::add(
     {.name = "planar",
-     .schema = schema,
+     .schema = schema_planar,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

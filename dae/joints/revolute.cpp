@@ -18,16 +18,16 @@ Blocks revolute(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, const
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_revolute = {
     .description = "Revolute joint, 5 rows: points P and Q coincide and the axes are parallel.",
     .parts = {"points", "axes"},
     .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
                R"("s_bar_q_j": [0, -0.2, 0], "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_revolute = io::Registry<ConstraintType>::add(
     {.name = "revolute",
-     .schema = schema,
+     .schema = schema_revolute,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

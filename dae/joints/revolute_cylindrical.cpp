@@ -19,7 +19,7 @@ Blocks revolute_cylindrical(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, 
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_revolute_cylindrical = {
     .description =
         "Revolute-cylindrical joint, 3 rows: point P slides along the axis of body j, which stays "
         "perpendicular to the axis of body i.",
@@ -27,9 +27,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [0, 1, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_revolute_cylindrical = io::Registry<ConstraintType>::add(
     {.name = "revolute-cylindrical",
-     .schema = schema,
+     .schema = schema_revolute_cylindrical,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

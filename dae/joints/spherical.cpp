@@ -16,14 +16,15 @@ Blocks spherical(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j)
 
 namespace {
 
-const TypeSchema schema = {.description = "Spherical joint, 3 rows: points P and Q coincide.",
-                           .parts = {"points"},
-                           .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
-                                      R"("s_bar_q_j": [0, -0.2, 0])"};
+const TypeSchema schema_spherical = {.description = "Spherical joint, 3 rows: points P and Q coincide.",
+                                     .parts = {"points"},
+                                     .example =
+                                         R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
+                                         R"("s_bar_q_j": [0, -0.2, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_spherical = io::Registry<ConstraintType>::add(
     {.name = "spherical",
-     .schema = schema,
+     .schema = schema_spherical,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          return spherical(i, s.i, j, s.j);

@@ -19,7 +19,7 @@ Blocks translational(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, 
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_translational = {
     .description =
         "Translational (prismatic) joint, 5 rows: the axis through P and the axis through Q are "
         "collinear, and the relative orientation keeps its initial value.",
@@ -27,9 +27,9 @@ const TypeSchema schema = {
     .example = R"("body_i": "ground", "body_j": "slider", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [1, 0, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_translational = io::Registry<ConstraintType>::add(
     {.name = "translational",
-     .schema = schema,
+     .schema = schema_translational,
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

@@ -19,16 +19,16 @@ Blocks universal(int i, const Vec3& s_bar_i, const Vec3& axis_bar_i, int j, cons
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_universal = {
     .description =
         "Universal (Cardan) joint, 4 rows: points P and Q coincide and the axes stay perpendicular.",
     .parts = {"points", "axes"},
     .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
                R"("axis_bar_j": [0, 1, 0])"};
 
-const bool registered = io::Registry<ConstraintType>::add(
+const bool registered_universal = io::Registry<ConstraintType>::add(
     {.name = "universal",
-     .schema = schema,
+     .schema = schema_universal,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);

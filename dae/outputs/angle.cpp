@@ -59,7 +59,7 @@ private:
     const Hinge hinge;
 };
 
-const TypeSchema schema = {
+const TypeSchema schema_angle = {
     .description =
         "Joint angle: rotation [rad] of body j relative to body i about a common axis since the start, "
         "counted through whole turns, and its rate [rad/s]: the columns NAME.angle and NAME.rate.",
@@ -68,9 +68,9 @@ const TypeSchema schema = {
     .example = R"("name": "crank angle", "body_i": "ground", "body_j": "crank", "axis_bar_i": [0, 0, 1], )"
                R"("axis_bar_j": [0, 0, 1])"};
 
-const bool registered = io::Registry<OutputType>::add(
+const bool registered_angle = io::Registry<OutputType>::add(
     {.name = "angle",
-     .schema = schema,
+     .schema = schema_angle,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x, const std::vector<std::string>&) {
          const auto [i, j] = bodies.pair(o);
          const Axes axis(o);

@@ -6,7 +6,7 @@ namespace hilda::dae {
 
 namespace {
 
-const TypeSchema schema = {
+const TypeSchema schema_expression = {
     .description =
         "A formula in t, the parameters of the model and the columns of the run: those of trajectory.csv "
         "(BODY.rx, energy), forces.csv "
@@ -22,9 +22,9 @@ const TypeSchema schema = {
               R"("type": "string", "default": "", "examples": ["J"])"}},
     .example = R"("name": "height", "value": "bar.rz + 0.5")"};
 
-const bool registered = io::Registry<OutputType>::add(
+const bool registered_expression = io::Registry<OutputType>::add(
     {.name = "expression",
-     .schema = schema,
+     .schema = schema_expression,
      .read = [](ObjectReader& o, const BodyFinder&, const State&, const std::vector<std::string>& columns) {
          std::string value = o.formula_of_names("value", columns);
          std::string unit = o.text("unit", "");

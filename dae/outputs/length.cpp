@@ -34,16 +34,17 @@ private:
     const Vec3 s_bar_i, s_bar_j;
 };
 
-const TypeSchema schema = {.description =
-                               "Distance [m] of points P and Q of two bodies and its rate [m/s]: the columns "
-                               "NAME.length and NAME.rate.",
-                           .parts = {"points"},
-                           .keys = {},
-                           .example = R"("name": "stroke", "body_i": "ground", "body_j": "slider")"};
+const TypeSchema schema_length = {
+    .description =
+        "Distance [m] of points P and Q of two bodies and its rate [m/s]: the columns "
+        "NAME.length and NAME.rate.",
+    .parts = {"points"},
+    .keys = {},
+    .example = R"("name": "stroke", "body_i": "ground", "body_j": "slider")"};
 
-const bool registered = io::Registry<OutputType>::add(
+const bool registered_length = io::Registry<OutputType>::add(
     {.name = "length",
-     .schema = schema,
+     .schema = schema_length,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);

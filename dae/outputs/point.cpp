@@ -53,7 +53,7 @@ private:
     const Vec3 s_bar;
 };
 
-const TypeSchema schema = {
+const TypeSchema schema_point = {
     .description =
         "Position [m], velocity [m/s] and acceleration [m/s^2] of a point of a body: the columns NAME.x, "
         "y, z, vx, vy, vz, ax, ay, az.",
@@ -66,9 +66,9 @@ const TypeSchema schema = {
           R"("$ref": "#/$defs/reference", "description": "The motion is relative to this body and in its frame.", "default": "ground")"}},
     .example = R"("name": "tip", "body": "bar", "point_bar": [0.5, 0, 0])"};
 
-const bool registered = io::Registry<OutputType>::add(
+const bool registered_point = io::Registry<OutputType>::add(
     {.name = "point",
-     .schema = schema,
+     .schema = schema_point,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
          const int body = bodies.body(o, "body");
          const Vec3 s_bar = o.vec3("point_bar", Vec3::Zero());

@@ -168,7 +168,7 @@ std::vector<io::KeySchema> with_length(std::vector<io::KeySchema> keys)
     return keys;
 }
 
-const bool registered =
+const bool registered_boundary_keys =
     io::Registry<BoundaryType>::add(
         {"plane",
          {.description = "Plane. The particles are on the side to which the normal points.",

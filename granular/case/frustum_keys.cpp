@@ -182,7 +182,7 @@ std::vector<io::KeySchema> frustum_type_keys()
 
 const std::vector<std::string> of_body = {"boundary_keys", "body_keys"};
 
-const bool registered =
+const bool registered_frustum_keys =
     io::Registry<BoundaryType>::add(
         {"frustum",
          {.description =

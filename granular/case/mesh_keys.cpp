@@ -162,7 +162,7 @@ const std::string
         R"("edge": {"description": "Longest edge of the cells into which each side is divided [m]; 0: one cell.",
                             "type": "number", "minimum": 0, "default": 0, "examples": [0.01]})";
 
-const bool registered = io::Registry<BoundaryType>::add(
+const bool registered_mesh_keys = io::Registry<BoundaryType>::add(
     {"mesh",
      {.description =
           "Triangles, with a contact for each local minimum of the distance: with a triangle, an edge "

@@ -172,7 +172,7 @@ std::unique_ptr<Processes> start(int& argc, char**& argv)
     return std::make_unique<MpiProcesses>();
 }
 
-const bool registered = io::Registry<ProcessesType>::add({.name = "MPI", .start = start});
+const bool registered_mpi_processes = io::Registry<ProcessesType>::add({.name = "MPI", .start = start});
 
 }  // namespace
 

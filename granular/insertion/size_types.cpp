@@ -126,7 +126,7 @@ io::KeySchema limit(const char* key, const std::string& description, bool requir
 constexpr const char* list_of_shares =
     R"("type": "array", "items": {"type": "number", "minimum": 0}, "minItems": 1, "examples": )";
 
-const bool registered =
+const bool registered_size_types =
     io::Registry<SizeType>::add(
         {.name = "uniform",
          .schema = {.description = "Radii with a constant density between two limits.",

@@ -42,7 +42,7 @@ private:
     std::vector<long> instants;  ///< [steps], in ascending order
 };
 
-const bool registered =
+const bool registered_contact_lists =
     io::Registry<SinkType>::add({.name = "contact_lists",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
                                      if (!run.c.outputs.contacts || !run.c.outputs.contacts->has_lists())

@@ -158,7 +158,7 @@ void remove_files(const std::string& folder, const std::string& begin, const std
     for (const fs::path& path : found) fs::remove(path, error);
 }
 
-const bool registered =
+const bool registered_field_output =
     io::Registry<SinkType>::add({.name = "fields",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
                                      if (run.c.outputs.fields.empty()) return nullptr;

@@ -69,7 +69,7 @@ private:
     const long steps;
 };
 
-const bool registered =
+const bool registered_frames =
     io::Registry<SinkType>::add({.name = "frames",
                                  .options = {{.name = "--no-vtk", .help = "write no frames for ParaView"}},
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {

@@ -69,7 +69,7 @@ private:
     const long steps;
 };
 
-const bool registered =
+const bool registered_group_rows =
     io::Registry<SinkType>::add({.name = "group_rows",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
                                      if (run.c.groups == nullptr) return nullptr;

@@ -87,7 +87,7 @@ private:
     long count = 0;  ///< samples in sums
 };
 
-const bool registered =
+const bool registered_mean_loads =
     io::Registry<SinkType>::add({.name = "loads",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
                                      if (!run.c.outputs.loads) return nullptr;

@@ -48,7 +48,7 @@ private:
     const long steps;
 };
 
-const bool registered =
+const bool registered_outflow =
     io::Registry<SinkType>::add({.name = "outflow",
                                  .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> {
                                      if (!run.c.world->removes()) return nullptr;

@@ -48,7 +48,7 @@ private:
     const long steps;
 };
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_replica_rows = io::Registry<SinkType>::add(
     {.name = "replica_rows",
      .options = {{.name = "--replica-rows",
                   .help =

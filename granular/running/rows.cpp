@@ -106,7 +106,7 @@ private:
     Flow last;
 };
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_rows = io::Registry<SinkType>::add(
     {.name = "rows",
      .make = [](const CaseSetup& run) -> std::unique_ptr<Sink> { return std::make_unique<Rows>(run); },
      .files = {"run.csv"}});

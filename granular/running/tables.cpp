@@ -49,7 +49,7 @@ private:
     const bool with_contacts;
 };
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_tables = io::Registry<SinkType>::add(
     {.name = "tables",
      .options = {{.name = "--contacts",
                   .help = "write contacts.csv as well: all contacts at the end of the run"}},

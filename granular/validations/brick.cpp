@@ -220,7 +220,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_brick = io::Registry<Validation>::add(
     {.name = "brick",
      .description = "sliding distance over the coefficient of friction (Fig. 7.4)",
      .run = run,

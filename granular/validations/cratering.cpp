@@ -282,7 +282,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_cratering = io::Registry<Validation>::add(
     {.name = "cratering",
      .description = "depth of the crater of a ball over its density and height of fall (Fig. 7.14)",
      .run = run,

@@ -438,7 +438,7 @@ ValidationResult run(const ValidationOptions& options)
     return {{table, surface, slice}, checks(measured)};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_drum = io::Registry<Validation>::add(
     {.name = "drum",
      .description = "flow of grains in a rotating drum over the Froude number (Fig. 7.19)",
      .run = run,

@@ -280,7 +280,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_head_on = io::Registry<Validation>::add(
     {.name = "head-on",
      .description = "restitution of a head-on collision, by integrator and step (Fig. 7.2)",
      .run = run});

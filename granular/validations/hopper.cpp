@@ -209,7 +209,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_hopper = io::Registry<Validation>::add(
     {.name = "hopper",
      .description = "mass flow through the outlet of a hopper over its diameter (Beverloo law)",
      .run = run});

@@ -432,7 +432,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_low_velocity_cratering = io::Registry<Validation>::add(
     {.name = "low-velocity-cratering",
      .description = "depth, duration and peak acceleration of the impact of a sphere at low velocity "
                     "(Figs. 7.15-7.18)",

@@ -265,7 +265,7 @@ ValidationResult run(const ValidationOptions& options)
     return result;
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_oblique = io::Registry<Validation>::add(
     {.name = "oblique",
      .description =
          "tangential restitution and angular velocity after an oblique impact, over the angle (Fig. 7.6)",

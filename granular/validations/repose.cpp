@@ -351,7 +351,7 @@ ValidationResult run(const ValidationOptions& options)
     return {{table, heaps, surface, spheres}, checks(all)};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_repose = io::Registry<Validation>::add(
     {.name = "repose",
      .description = "angle of repose of a heap over the friction and the rolling resistance of its grains",
      .run = run,

@@ -353,7 +353,7 @@ ValidationResult run(const ValidationOptions& options)
     return {{table, curves}, checks(measured)};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_shear = io::Registry<Validation>::add(
     {.name = "shear",
      .description =
          "shear stress of a sample of grains over the shear displacement and the normal stress (Fig. 7.12)",

@@ -222,7 +222,7 @@ private:
     std::vector<ValidationCheck> checks;
 };
 
-const bool registered =
+const bool registered_stacking =
     io::Registry<Validation>::add({"stacking", "critical mass of the upper of three spheres (Fig. 7.7)",
                                    [](const ValidationOptions& options) { return Stacking(options).run(); }});
 

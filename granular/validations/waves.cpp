@@ -145,7 +145,7 @@ ValidationResult waves(const ValidationOptions& options)
     return {.tables = {study, profiles}, .checks = check(all)};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_waves = io::Registry<Validation>::add(
     {"waves", "floor forces of a lattice of spheres under a point load (Figs. 7.9, 7.10)", waves});
 
 }  // namespace

@@ -460,7 +460,7 @@ ValidationResult run(const ValidationOptions& options)
     return {{table, motion, grains}, checks(measured)};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_wheel = io::Registry<Validation>::add(
     {.name = "wheel",
      .description = "pull, torque and sinkage of a wheel on a bed of grains over the slip (Figs. 7.21-7.23)",
      .run = run,

@@ -80,7 +80,7 @@ const Tableau& dop853()
 
 namespace {
 
-const bool registered = register_with_adaptive_steps<RungeKuttaStep, dop853>(
+const bool registered_dop853 = register_with_adaptive_steps<RungeKuttaStep, dop853>(
     {.name = "rA-dop853",
      .description = "explicit Runge-Kutta 8(5,3) of Hairer with projection; adaptive or fixed step",
      .order = 8,

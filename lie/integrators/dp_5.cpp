@@ -32,7 +32,7 @@ const Tableau& dormand_prince_5()
 
 namespace {
 
-const bool registered = register_with_adaptive_steps<RungeKuttaStep, dormand_prince_5>(
+const bool registered_dp_5 = register_with_adaptive_steps<RungeKuttaStep, dormand_prince_5>(
     {.name = "rA-dp-5",
      .description = "explicit Runge-Kutta 5(4) of Dormand and Prince with projection; adaptive or fixed step",
      .order = 5,

@@ -42,7 +42,7 @@ private:
     Saddle K;  ///< the Newton matrix, frozen at t_n (Eq. 3.23)
 };
 
-const bool registered = register_scheme<FullyImplicit1>(
+const bool registered_fully_implicit_1 = register_scheme<FullyImplicit1>(
     {.name = "rA-full-1",
      .description = "backward Euler on SO(3), index 3, with a frozen Newton matrix",
      .order = 1,

@@ -127,7 +127,7 @@ private:
     std::vector<int> body_at, row_at, column_at, second_at, load_at, shift_at;
 };
 
-const bool registered = register_scheme<FullyImplicit1Exact>(
+const bool registered_fully_implicit_1_exact = register_scheme<FullyImplicit1Exact>(
     {.name = "rA-full-1-exact",
      .description = "backward Euler on SO(3), index 3, with the exact Newton matrix",
      .order = 1,

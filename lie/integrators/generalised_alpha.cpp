@@ -296,7 +296,7 @@ private:
     State saved;                         ///< workspace: the state of the factors in a history
 };
 
-const bool registered = register_scheme<GeneralisedAlpha>(
+const bool registered_generalised_alpha = register_scheme<GeneralisedAlpha>(
     {.name = "rA-genalpha",
      .description = "generalised-alpha on SO(3), index 3, with numerical damping",
      .order = 2,

@@ -32,7 +32,7 @@ public:
     {}
 };
 
-const bool registered = register_scheme<HalfImplicit1>(
+const bool registered_half_implicit_1 = register_scheme<HalfImplicit1>(
     {.name = "rA-half-1",
      .description = "half-implicit (symplectic) Euler with position constraints",
      .order = 1,

@@ -33,7 +33,7 @@ public:
     {}
 };
 
-const bool registered = register_scheme<HalfImplicit1Kick>(
+const bool registered_half_implicit_1_kick = register_scheme<HalfImplicit1Kick>(
     {.name = "rA-half-1-kick",
      .description =
          "leapfrog (SHAKE): rA-half-1 started with half a kick and read at the nodes; the energy of "

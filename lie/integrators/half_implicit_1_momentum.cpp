@@ -113,7 +113,7 @@ private:
     double h = 0;                     ///< of this step
 };
 
-const bool registered = register_scheme<HalfImplicit1Momentum>(
+const bool registered_half_implicit_1_momentum = register_scheme<HalfImplicit1Momentum>(
     {.name = "rA-half-1-momentum",
      .description = "leapfrog in angular momentum, the default",
      .order = 2,

@@ -49,7 +49,7 @@ private:
     double half_h = 0;
 };
 
-const bool registered = register_scheme<HalfImplicit2>(
+const bool registered_half_implicit_2 = register_scheme<HalfImplicit2>(
     {.name = "rA-half-2",
      .description = "Adams-Bashforth 2 for velocities, trapezoidal rule for positions",
      .order = 2,

@@ -73,7 +73,7 @@ private:
     Eigen::VectorXd increments;  ///< r_n - r_{n-1} and ψ_n of each body
 };
 
-const bool registered =
+const bool registered_half_implicit_2_bdf2 =
     register_scheme<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",
                                         .description = "Adams-Bashforth 2 for velocities, BDF2 for positions",
                                         .order = 2,

@@ -9,7 +9,7 @@
 namespace hilda::lie {
 namespace {
 
-const bool registered = register_with_adaptive_steps<RadauStep>(
+const bool registered_radau_5 = register_with_adaptive_steps<RadauStep>(
     {.name = "rA-radau-5",
      .description = "implicit Radau IIA of order 5, index 2, with projection; adaptive or fixed step",
      .order = 5,

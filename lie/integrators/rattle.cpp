@@ -27,7 +27,7 @@ public:
     }
 };
 
-const bool registered =
+const bool registered_rattle =
     register_scheme<Rattle>({.name = "rA-rattle",
                              .description = "RATTLE on the Lie group (RATTLie), variational",
                              .order = 2,

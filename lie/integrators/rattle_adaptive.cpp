@@ -282,7 +282,7 @@ private:
     Eigen::VectorXd change, tolerance;
 };
 
-const bool registered =
+const bool registered_rattle_adaptive =
     register_scheme<RattleAdaptive>({.name = "rA-rattle-adaptive",
                                      .description = "RATTLE with reversible variable steps; the first one "
                                                     "from rtol and atol, the others from the loads",

@@ -113,9 +113,10 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .histories = false};
 }
 
-const bool registered = register_scheme<Rattle4>(composition("rA-rattle-4", 4, "Suzuki (1990)")) &&
-                        register_scheme<Rattle6>(composition("rA-rattle-6", 6, "Kahan, Li (1997)")) &&
-                        register_scheme<Rattle8>(composition("rA-rattle-8", 8, "Kahan, Li (1997)"));
+const bool registered_rattle_compositions =
+    register_scheme<Rattle4>(composition("rA-rattle-4", 4, "Suzuki (1990)")) &&
+    register_scheme<Rattle6>(composition("rA-rattle-6", 6, "Kahan, Li (1997)")) &&
+    register_scheme<Rattle8>(composition("rA-rattle-8", 8, "Kahan, Li (1997)"));
 
 }  // namespace
 }  // namespace hilda::lie

@@ -111,9 +111,9 @@ Scheme extrapolation(int order)
             .energy_drifts = true};
 }
 
-const bool registered = register_scheme<Extrapolation<2>>(extrapolation(4)) &&
-                        register_scheme<Extrapolation<3>>(extrapolation(6)) &&
-                        register_scheme<Extrapolation<4>>(extrapolation(8));
+const bool registered_rattle_extrapolations = register_scheme<Extrapolation<2>>(extrapolation(4)) &&
+                                              register_scheme<Extrapolation<3>>(extrapolation(6)) &&
+                                              register_scheme<Extrapolation<4>>(extrapolation(8));
 
 }  // namespace
 }  // namespace hilda::lie

@@ -54,7 +54,7 @@ private:
     Eigen::VectorXd sum, slope, change;
 };
 
-const bool registered = register_scheme<Rkmk4>(
+const bool registered_rkmk_4 = register_scheme<Rkmk4>(
     {.name = "rA-rkmk-4",
      .description = "Runge-Kutta-Munthe-Kaas of fourth order on the index-1 equations, with projection",
      .order = 4,

@@ -12,7 +12,7 @@
 namespace hilda::reference {
 namespace {
 
-const bool registered = register_half_implicit<EulerAngles>("Euler angles", "r, eps, h^2 lambda");
+const bool registered_reps_half_1 = register_half_implicit<EulerAngles>("Euler angles", "r, eps, h^2 lambda");
 
 }  // namespace
 }  // namespace hilda::reference

@@ -49,14 +49,15 @@ private:
     void save_more(double h, Eigen::Ref<Eigen::VectorXd> out) const override { out << h, q_n, qdot_n; }
 };
 
-const bool registered = lie::register_scheme<RpBdf2>({.name = "rp-bdf2",
-                                                      .description = "BDF2 on Euler parameters, index 3",
-                                                      .order = 2,
-                                                      .order_lambda = 2,
-                                                      .formulation = "rp",
-                                                      .unknowns = "r'', p'', lambda, lambda_P",
-                                                      .source = "Fang (2022), Sec. 2.1.7, with BDF2",
-                                                      .loads = lie::LoadEvaluation::implicit});
+const bool registered_rp_bdf2 =
+    lie::register_scheme<RpBdf2>({.name = "rp-bdf2",
+                                  .description = "BDF2 on Euler parameters, index 3",
+                                  .order = 2,
+                                  .order_lambda = 2,
+                                  .formulation = "rp",
+                                  .unknowns = "r'', p'', lambda, lambda_P",
+                                  .source = "Fang (2022), Sec. 2.1.7, with BDF2",
+                                  .loads = lie::LoadEvaluation::implicit});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -36,7 +36,7 @@ private:
     }
 };
 
-const bool registered =
+const bool registered_rp_full_1 =
     lie::register_scheme<RpFull1>({.name = "rp-full-1",
                                    .description = "backward Euler on Euler parameters, index 3",
                                    .order = 1,

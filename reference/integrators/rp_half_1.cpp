@@ -12,7 +12,7 @@
 namespace hilda::reference {
 namespace {
 
-const bool registered =
+const bool registered_rp_half_1 =
     register_half_implicit<EulerParameters>("Euler parameters", "r, p, h^2 lambda, h^2 lambda_P");
 
 }  // namespace

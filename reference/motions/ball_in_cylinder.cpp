@@ -11,7 +11,7 @@ namespace hilda::reference {
 namespace {
 
 // Largest rotation before the rotation vector is reset [rad]. The chart exp(θ̃) is regular below 2π.
-constexpr double leg_angle = 0.5;
+constexpr double cylinder_leg_angle = 0.5;
 
 void check(const BallInCylinder& c)
 {
@@ -109,7 +109,7 @@ std::vector<ContactInstant> BallInCylinder::roll(const std::vector<double>& inst
         while (t < t_k) {
             Eigen::VectorXd theta = Eigen::VectorXd::Zero(3);
             const double rate = RollingState(*this, t).omega.norm() + std::abs(Omega);
-            ode.advance(t, theta, std::min(t_k, t + leg_angle / rate));
+            ode.advance(t, theta, std::min(t_k, t + cylinder_leg_angle / rate));
             A = lie::orthonormalised(lie::exp(theta) * A);
         }
         const RollingState x(*this, t);

@@ -14,7 +14,7 @@ namespace hilda::reference {
 namespace {
 
 // Largest rotation before the rotation vector is reset [rad]. The chart exp(θ̃) is regular below 2π.
-constexpr double leg_angle = 1;
+constexpr double ellipsoid_leg_angle = 1;
 
 /// Contact point and height of the centre with their rates: ē, ē̇, ρ, ā, ā̇
 struct PlaneContact {
@@ -107,7 +107,8 @@ public:
                 lie::reject("reference::EllipsoidOnPlane",
                             "the instants must ascend and must not be negative", instant);
             while (t < instant) {
-                ode.advance(t, y, std::min(instant, t + leg_angle / (y.tail<3>().norm() + swing_rate)));
+                ode.advance(t, y,
+                            std::min(instant, t + ellipsoid_leg_angle / (y.tail<3>().norm() + swing_rate)));
                 A_0 = lie::orthonormalised(A_0 * lie::exp(y.segment<3>(2)));
                 y.segment<3>(2).setZero();
             }

@@ -27,7 +27,7 @@ void step(benchmark::State& timer, const Start& start)
     }
 }
 
-const bool registered = [] {
+const bool registered_contact = [] {
     for (const bool dissertation : {true, false}) {
         const std::string preset = dissertation ? "dissertation" : "balanced";
         const studies::Incline incline{.alpha = 0.2, .eta_r = 0.3, .dissertation = dissertation};

@@ -81,7 +81,7 @@ void evolving(benchmark::State& timer, const std::string& scheme, lie::LinearSol
     timer.SetComplexityN(timer.range(0));
 }
 
-const bool registered = [] {
+const bool registered_evolving = [] {
     for (const char* name : {"rA-half-1", "rA-half-1-momentum"})
         for (const auto& [by, solver] : {std::pair{"klu", lie::LinearSolver::klu},
                                          std::pair{"condensed", lie::LinearSolver::condensed}}) {

@@ -34,7 +34,7 @@ void step(benchmark::State& timer, const lie::Scheme& scheme, lie::LinearSolver 
     timer.SetComplexityN(timer.range(0));
 }
 
-const bool registered = [] {
+const bool registered_step = [] {
     for (const lie::Scheme& scheme : lie::schemes()) {
         if (scheme.adaptive) continue;
         const bool saddle = scheme.formulation == "rA";

@@ -47,7 +47,7 @@ void march(benchmark::State& timer, const char* name, bool ball, bool watched)
     }
 }
 
-const bool registered = [] {
+const bool registered_watch = [] {
     for (const char* scheme : {"rA-half-1-momentum", "rA-half-1", "rA-rkmk-4"})
         for (const bool ball : {false, true})
             for (const bool watched : {false, true}) {

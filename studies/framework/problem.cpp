@@ -14,7 +14,7 @@ namespace hilda::studies {
 namespace {
 
 /// N of FAMILY_N; empty for other names. lie::InvalidInput for N out of range.
-std::optional<int> number(const std::string& name, const std::string& family, int most)
+std::optional<int> member_number(const std::string& name, const std::string& family, int most)
 {
     if (!name.starts_with(family + '_')) return std::nullopt;
     const std::string digits = name.substr(family.size() + 1);
@@ -31,8 +31,8 @@ std::optional<int> number(const std::string& name, const std::string& family, in
 Problem problem(const std::string& name)
 {
     if (const Problem* known = io::Registry<Problem>::find(name)) return *known;
-    if (const auto n = number(name, "n_pendulum", most_bars)) return n_pendulum(*n, name);
-    if (const auto n = number(name, "n_four_bar", most_windows)) return n_four_bar(*n, name);
+    if (const auto n = member_number(name, "n_pendulum", most_bars)) return n_pendulum(*n, name);
+    if (const auto n = member_number(name, "n_four_bar", most_windows)) return n_four_bar(*n, name);
 
     const std::vector<std::string> names = io::Registry<Problem>::names();
     std::string all;

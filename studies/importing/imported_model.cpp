@@ -39,9 +39,11 @@ io::Json list(const Mat3& M)
 bool are_parallel(const Vec3& a, const Vec3& b) { return a.cross(b).norm() <= tolerance; }
 bool are_perpendicular(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b)) <= tolerance; }
 
-class Writer {
+class ModelWriter {
 public:
-    Writer(const ImportedModel& from, const std::string& file) : from(from), file(file), body(from.bodies) {}
+    ModelWriter(const ImportedModel& from, const std::string& file)
+        : from(from), file(file), body(from.bodies)
+    {}
 
     std::string text()
     {
@@ -270,7 +272,7 @@ private:
 
 std::string model_text(const ImportedModel& from, const std::string& file)
 {
-    return Writer(from, file).text();
+    return ModelWriter(from, file).text();
 }
 
 }  // namespace hilda::studies

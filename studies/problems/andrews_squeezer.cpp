@@ -108,7 +108,7 @@ std::string model()
                        bodies, joints, point(C), point(K3.in_body(D)));
 }
 
-const bool registered = io::Registry<Problem>::add(
+const bool registered_andrews_squeezer = io::Registry<Problem>::add(
     Problem{.name = "andrews_squeezer",
             .what = "Andrews' squeezer, seven bodies and three loops; Hairer and Wanner II, VII.7",
             .model = model(),

@@ -22,7 +22,7 @@ using lie::Vec3;
 
 std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
-std::string model()
+std::string bricard_model()
 {
     constexpr int rods = 5;
     const std::array<Vec3, rods + 1> corner = {Vec3(0, 0, 0),  Vec3(1, 0, 0),  Vec3(1, -1, 0),
@@ -67,11 +67,11 @@ std::string model()
                        bodies, joints);
 }
 
-const bool registered = io::Registry<Problem>::add(
+const bool registered_bricard = io::Registry<Problem>::add(
     Problem{.name = "bricard",
             .what = "Bricard's mechanism, five rods and six revolute joints, one redundant row that changes; "
                     "benchmark A04 of Gonzalez et al. (2006)",
-            .model = model(),
+            .model = bricard_model(),
             .reference_name = "index-1 equations with all rows (GSL rk8pd, 1e-13)",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& t) {

@@ -22,7 +22,7 @@ namespace {
 using lie::Mat3;
 using lie::Vec3;
 
-std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
+std::string components(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 /// A rod with its point mass; the x axis of the body points from the hinge to the point mass.
 struct Rod {
@@ -41,7 +41,7 @@ struct Rod {
     }
 };
 
-std::string model()
+std::string governor_model()
 {
     constexpr double omega = 2 * std::numbers::pi, alpha = std::numbers::pi / 6, half_width = 0.05;
     const Rod rod;
@@ -52,21 +52,23 @@ std::string model()
         Mat3 A;
         A << x_axis, z_axis.cross(x_axis), z_axis;
         const Vec3 hinge(side * half_width, 1, 0), r = hinge + rod.centre * x_axis;
-        rods += fmt::format(R"(,
+        rods +=
+            fmt::format(R"(,
     {{"name": "{}", "mass": {}, "inertia": {}, "r": {}, "A": [{}, {}, {}],
      "r_dot": {}, "omega": {}}})",
-                            name, rod.mass, list(rod.J_bar), list(r), list(A.row(0)), list(A.row(1)),
-                            list(A.row(2)), list(Vec3(0, omega, 0).cross(r)),
-                            list(A.transpose() * Vec3(0, omega, 0)));
+                        name, rod.mass, components(rod.J_bar), components(r), components(A.row(0)),
+                        components(A.row(1)), components(A.row(2)), components(Vec3(0, omega, 0).cross(r)),
+                        components(A.transpose() * Vec3(0, omega, 0)));
         hinges += fmt::format(R"(,
     {{"name": "hinge of {}", "type": "revolute", "body_i": "shaft", "s_bar_p_i": {}, "axis_bar_i": [0, 0, 1],
      "body_j": "{}", "s_bar_q_j": {}, "axis_bar_j": [0, 0, {}]}})",
-                              name, list({side * half_width, 0.5, 0}), name, list({-rod.centre, 0, 0}), side);
+                              name, components({side * half_width, 0.5, 0}), name,
+                              components({-rod.centre, 0, 0}), side);
         springs += fmt::format(
             R"({}    {{"name": "spring of {}", "type": "spring-damper", "body_i": "slider", "s_bar_p_i": {},
      "body_j": "{}", "s_bar_q_j": {}, "stiffness": 8e5, "damping": 4e4, "free_length": 0.5, "implicit": true}})",
-            springs.empty() ? "" : ",\n", name, list({side * half_width, 0, 0}), name,
-            list({0.5 - rod.centre, 0, 0}));
+            springs.empty() ? "" : ",\n", name, components({side * half_width, 0, 0}), name,
+            components({0.5 - rod.centre, 0, 0}));
     }
     return fmt::format(R"({{
   "hilda_model": 1,
@@ -92,10 +94,10 @@ std::string model()
                        omega, rods, hinges, springs);
 }
 
-const bool registered = io::Registry<Problem>::add(
+const bool registered_flyball_governor = io::Registry<Problem>::add(
     Problem{.name = "flyball_governor",
             .what = "flyball governor with stiff spring-dampers; benchmark A05 of Gonzalez et al. (2006)",
-            .model = model(),
+            .model = governor_model(),
             .reference_name = "index-1 equations (GSL rk8pd, 1e-13)",
             .reference_solution =
                 [](dae::Description& d, const std::vector<double>& t) {

@@ -159,7 +159,7 @@ Problem n_four_bar(int N, const std::string& name)
 
 namespace {
 
-const bool registered = io::Registry<Problem>::add(n_four_bar(2, family));
+const bool registered_n_four_bar = io::Registry<Problem>::add(n_four_bar(2, family));
 
 }  // namespace
 

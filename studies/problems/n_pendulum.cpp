@@ -23,7 +23,7 @@ std::string bar(int i, const std::string& velocities = "")
 }
 
 /// The spherical joint above bar i: CD rows along the three global axes
-std::string ball(int i)
+std::string bob(int i)
 {
     const auto name = [](int b) { return "\"bar_" + std::to_string(b) + "\""; };
     const std::string bodies = i == 1 ? R"("body_i": "bar_1", "body_j": "ground", "s_bar_p_i": [-1, 0, 0])"
@@ -53,7 +53,7 @@ Problem chain(const std::string& name, const std::string& what, const std::strin
             .observable = {}};
 }
 
-const std::string family = "n_pendulum";
+const std::string pendulum_family = "n_pendulum";
 
 }  // namespace
 
@@ -63,12 +63,12 @@ Problem n_pendulum(int N, const std::string& name)
     for (int i = 1; i <= N; ++i) {
         const char* before = i == 1 ? "" : ",\n";
         bodies += before + bar(i);
-        constraints += before + ball(i);
+        constraints += before + bob(i);
     }
     return chain(
         name,
-        (name == family ? "chain of 2 bars (n_pendulum_N: N bars)"
-                        : "chain of " + std::to_string(N) + (N == 1 ? " bar" : " bars")) +
+        (name == pendulum_family ? "chain of 2 bars (n_pendulum_N: N bars)"
+                                 : "chain of " + std::to_string(N) + (N == 1 ? " bar" : " bars")) +
             " with spherical joints, from rest under oblique gravity (Fang 2022, chapter 3)",
         "bars of 2 m, section 0.05 m, 7800 kg/m3; gravity of the published code; at rest, because its "
         "random spins without seed violate the joints",
@@ -93,7 +93,7 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
     for (int i = 1; i <= N; ++i) {
         const char* before = i == 1 ? "" : ",\n";
         bodies += before + bar(i, R"(, "omega": [)" + io::shortest(spin[i - 1]) + ", 0, 0]");
-        constraints += before + ball(i);
+        constraints += before + bob(i);
     }
     return chain(name, "chain of " + std::to_string(N) + " spinning bars",
                  "each bar spins about its long axis, seed " + std::to_string(seed), bodies, constraints);
@@ -101,7 +101,7 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
 
 namespace {
 
-const bool two = io::Registry<Problem>::add(n_pendulum(2, family));
+const bool two = io::Registry<Problem>::add(n_pendulum(2, pendulum_family));
 
 const bool spin = io::Registry<Problem>::add(chain(
     "n_pendulum_2_spin",
@@ -109,7 +109,7 @@ const bool spin = io::Registry<Problem>::add(chain(
     "n_pendulum_2 with consistent initial velocities: a spin of each bar and a spatial motion of the joints",
     bar(1, R"(, "r_dot": [-0.5, -1, 0], "omega": [3, 0.5, -1])") + ",\n" +
         bar(2, R"(, "r_dot": [-2, 0, 0], "omega": [-4, 1, 2])"),
-    ball(1) + ",\n" + ball(2)));
+    bob(1) + ",\n" + bob(2)));
 
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered = io::Registry<Problem>::add(
+const bool registered_single_pendulum = io::Registry<Problem>::add(
     {.name = "single_pendulum",
      .what = "bar with a driven oscillation about x, no degree of freedom (published code of Fang 2022)",
      .model = R"json({"hilda_model": 1, "name": "single_pendulum",

@@ -10,7 +10,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered = io::Registry<Problem>::add(
+const bool registered_slider_crank = io::Registry<Problem>::add(
     {.name = "slider_crank",
      .what = "spatial slider-crank, crank driven at one revolution per second, no degree of "
              "freedom (Fang 2022, Table 3.4)",

@@ -48,7 +48,7 @@ constexpr int most_processes = 4;
 class NewFile {
 public:
     explicit NewFile(const std::string& file)
-        : descriptor(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
+        : descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
     {
         if (descriptor < 0) throw io::IoError(file + ": cannot be written: " + std::strerror(errno));
     }
@@ -76,7 +76,7 @@ pid_t start(std::vector<std::string> words, int threads, const std::string& outp
         // Threads that wait actively would slow down the studies beside this one.
         setenv("OMP_NUM_THREADS", omp_threads.c_str(), 0);
         setenv("OMP_WAIT_POLICY", "passive", 0);
-        dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+        dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
         dup2(out.descriptor, STDOUT_FILENO);
         dup2(err.descriptor, STDERR_FILENO);
         execv("/proc/self/exe", argv.data());

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t most = size_t{256} << 20;  // largest file that is read [byte]
+constexpr size_t most_bytes = size_t{256} << 20;  // largest file that is read [byte]
 
 using Row = std::map<std::string, std::string>;
 
@@ -72,7 +72,7 @@ double value_of(const ReproductionCheck& check, const Row& row, const std::vecto
 std::string text_of(const std::string& file)
 {
     std::error_code error;
-    return fs::is_regular_file(file, error) ? io::read_file(file, most) : "";
+    return fs::is_regular_file(file, error) ? io::read_file(file, most_bytes) : "";
 }
 
 std::string last_line(std::string text)
@@ -109,7 +109,7 @@ std::vector<Criterion> criteria_of_study(const std::string& file)
 {
     const std::string text = text_of(file);
     if (text.empty()) return {};
-    const io::JsonSource study(text, file, most);
+    const io::JsonSource study(text, file, most_bytes);
     std::vector<Criterion> all;
     const io::Json::Member* checks = study.root.member("checks");
     if (checks != nullptr && checks->value.list() != nullptr)

@@ -44,13 +44,14 @@ public:
     }
 };
 
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
+std::shared_ptr<const FrictionModel> read_constant_torque(dae::ObjectReader& o, FrictionParameters p,
+                                                          const NormalLaw&)
 {
     p.mu_r = o.not_negative("mu_r", 0);
     return std::make_shared<ConstantTorque>(p);
 }
 
-const bool registered = io::Registry<FrictionLaw>::add(
+const bool registered_constant_torque = io::Registry<FrictionLaw>::add(
     {.name = "constant-torque",
      .what = "rolling torque of constant size (Fang 2022, Eq. 2.48)",
      .schema = {.description = "Sliding friction as in slide-roll-spin. Rolling friction is a torque of "
@@ -63,7 +64,7 @@ const bool registered = io::Registry<FrictionLaw>::add(
                           R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
                 .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
      .make = make_law<ConstantTorque>,
-     .read = read});
+     .read = read_constant_torque});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -71,13 +71,13 @@ private:
     }
 };
 
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
+std::shared_ptr<const FrictionModel> read_epsd(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
 {
     p.mu_r = o.not_negative("mu_r", 0);
     return std::make_shared<Epsd>(p);
 }
 
-const bool registered = io::Registry<FrictionLaw>::add(
+const bool registered_epsd = io::Registry<FrictionLaw>::add(
     {.name = "epsd",
      .what = "elastic-plastic rolling spring and dashpot (Fang 2022, Sec. 2.2.1.4)",
      .schema =
@@ -91,7 +91,7 @@ const bool registered = io::Registry<FrictionLaw>::add(
                     R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
           .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
      .make = make_law<Epsd>,
-     .read = read});
+     .read = read_epsd});
 
 }  // namespace
 }  // namespace hilda::contact

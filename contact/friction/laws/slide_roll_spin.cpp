@@ -243,7 +243,8 @@ private:
 };
 
 /// For "spin": "hertz" the effective modulus is that of the normal law unless E_star is given.
-std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParameters p, const NormalLaw& normal)
+std::shared_ptr<const FrictionModel> read_slide_roll_spin(dae::ObjectReader& o, FrictionParameters p,
+                                                          const NormalLaw& normal)
 {
     o.exclude("eta_psi", "spin");
     p.eta_r = o.not_negative("eta_r", 0);
@@ -257,7 +258,7 @@ std::shared_ptr<const FrictionModel> read(dae::ObjectReader& o, FrictionParamete
     return std::make_shared<SlideRollSpin>(p);
 }
 
-const bool registered = io::Registry<FrictionLaw>::add(
+const bool registered_slide_roll_spin = io::Registry<FrictionLaw>::add(
     {.name = "slide-roll-spin",
      .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
      .schema =
@@ -284,7 +285,7 @@ const bool registered = io::Registry<FrictionLaw>::add(
           .example = R"("mu_s": 0.5, "mu_k": 0.4, "K_E": 10000, "eta_r": 0.05)",
           .rest = R"("dependentRequired": {"E_star": ["spin"]}, "not": {"required": ["eta_psi", "spin"]})"},
      .make = make_law<SlideRollSpin>,
-     .read = read});
+     .read = read_slide_roll_spin});
 
 }  // namespace
 }  // namespace hilda::contact

@@ -91,7 +91,7 @@ FillSpec read_table(ObjectReader& o, const std::optional<double>&)
     return f;
 }
 
-const bool registered = io::Registry<FillType>::add(
+const bool registered_fill_csv = io::Registry<FillType>::add(
     {.name = "csv",
      .schema =
          {.description = "The particles of a CSV table.",

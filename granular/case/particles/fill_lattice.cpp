@@ -49,7 +49,7 @@ double estimated(const FillSpec& f, const Vec3& size)
 
 const std::string example = R"("low": [0, 0, 0], "high": [0.03, 0.02, 0.03], "radius": 0.001, "jitter": 0.5)";
 
-const bool registered =
+const bool registered_fill_lattice =
     io::Registry<FillType>::add({.name = "lattice",
                                  .schema = {.description = "Simple cubic lattice with rows along x.",
                                             .parts = {"fill_keys", "filled_box"},

@@ -63,7 +63,7 @@ double estimated(const FillSpec& f, const Vec3& size)
     return 0.58 * n(size.x) * n(size.y) * n(size.z);
 }
 
-const bool registered = io::Registry<FillType>::add(
+const bool registered_fill_poisson = io::Registry<FillType>::add(
     {.name = "poisson",
      .schema = {.description =
                     "Random positions with a minimum distance (Bridson 2007), sorted from the bottom.",

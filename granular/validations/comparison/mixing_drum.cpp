@@ -231,7 +231,7 @@ ValidationResult run(const ValidationOptions& options)
           last / early, 0, 0.9}}};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_mixing_drum = io::Registry<Validation>::add(
     {.name = "comparison-drum",
      .description = "mixing of grains of two sizes in a drum (comparison of ten codes, case 2)",
      .run = run});

@@ -188,7 +188,7 @@ ValidationResult run(const ValidationOptions& options)
          {"grains that are missing at the end", lost, 0, 0}}};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_penetration = io::Registry<Validation>::add(
     {.name = "comparison-penetration",
      .description = "impact of a steel ball on a bed of grains (comparison of ten codes, case 3)",
      .run = run,

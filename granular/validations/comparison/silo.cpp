@@ -204,7 +204,7 @@ ValidationResult run(const ValidationOptions& options)
          {"grains inside and removed, less the initial ones", balance, 0, 0}}};
 }
 
-const bool registered = io::Registry<Validation>::add(
+const bool registered_silo = io::Registry<Validation>::add(
     {.name = "comparison-silo",
      .description = "grains in a silo that empties, over time (comparison of ten codes, case 1)",
      .run = run,

@@ -148,7 +148,7 @@ void compare(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_compare = io::Registry<Study>::add(
     {.name = "compare",
      .answers =
          "trajectories of several integrators on one model and their differences to the reference solution",

@@ -293,7 +293,7 @@ void convergence(StudyContext& s)
     }
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_convergence = io::Registry<Study>::add(
     {.name = "convergence",
      .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
      .accepted = takes::reference | takes::all | takes::strict | takes::shard,

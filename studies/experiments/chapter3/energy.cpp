@@ -24,7 +24,7 @@ namespace {
 
 // The integral of the work has its full order from this node on (NodeIntegral).
 constexpr long first_precise = 3;
-constexpr long max_rows = 1000;  // limit on the rows per run in energy.csv
+constexpr long max_energy_rows = 1000;  // limit on the rows per run in energy.csv
 
 /// Records the energy and the work of every node; the curve keeps only the rows of the grid.
 class EnergyRecorder final : public lie::Observer {
@@ -82,7 +82,7 @@ void compute(EnergyRun& run, const lie::Settings& settings)
 {
     EnergyRecorder recorder(
         *run.c->started->model,
-        lie::TimeGrid::over(run.c->end, run.h, run.c->end / static_cast<double>(max_rows)));
+        lie::TimeGrid::over(run.c->end, run.h, run.c->end / static_cast<double>(max_energy_rows)));
     lie::Observer* observers[] = {&recorder};
     march(run, settings, observers);
     run.start = recorder.start;
@@ -175,7 +175,7 @@ void energy(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_energy = io::Registry<Study>::add(
     {.name = "energy",
      .answers = "energy over time: its drift in conservative models (Fig. 3.5), its balance with the work in "
                 "damped and driven ones",

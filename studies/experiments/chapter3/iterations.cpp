@@ -126,7 +126,7 @@ void iterations(StudyContext& s)
     for (size_t k = 0; k < runs.size(); ++k) s.measured[k].value["iterations"] = runs[k].mean();
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_iterations = io::Registry<Study>::add(
     {.name = "iterations",
      .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
      .accepted = takes::strict | takes::shard,

@@ -166,7 +166,7 @@ void long_time(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_long_time = io::Registry<Study>::add(
     {.name = "long-time",
      .answers = "energy and angular momentum of conservative models over long times, by decade of time",
      .accepted = takes::strict | takes::shard,

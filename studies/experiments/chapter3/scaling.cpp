@@ -150,7 +150,7 @@ void scaling(StudyContext& s)
             s.measured.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
 }
 
-const bool registered =
+const bool registered_scaling =
     io::Registry<Study>::add({.name = "scaling",
                               .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
                               .accepted = takes::repeats | takes::bars | takes::seed | takes::strict,

@@ -117,7 +117,7 @@ void draw_snapshots(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_snapshots = io::Registry<Study>::add(
     {.name = "snapshots",
      .answers = "pictures of models at four times: bodies, joints, paths (Fig. 3.3); bodies and constraints "
                 "(Table 3.1)",

@@ -111,7 +111,7 @@ void stiffness(StudyContext& s)
     s.end_of_runs(run_pointers(runs));
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_stiffness = io::Registry<Study>::add(
     {.name = "stiffness",
      .answers = "error against CPU time over the stiffness and the damping of a strut",
      .accepted = takes::reference | takes::rtols | takes::repeats | takes::strict,

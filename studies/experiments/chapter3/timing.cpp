@@ -14,7 +14,7 @@ namespace hilda::studies {
 
 namespace {
 
-const std::string baseline = "rA-full-1";
+const std::string timed_baseline = "rA-full-1";
 
 /// CPU time ratio reported in the dissertation: half-implicit over fully implicit scheme
 void print_half_over_full(const Sweep<TimedRun>& runs, StudyText& out)
@@ -45,13 +45,13 @@ void timing(StudyContext& s)
     runs.compute(
         s, [&](TimedRun& run) { march(run, s.options.settings); }, ", first runs");
     time_in_turn(s, runs);
-    set_ratios(runs, baseline);
+    set_ratios(runs, timed_baseline);
 
     const Columns<TimedRun> columns =
         Columns<TimedRun>{column::problem,         column::integrator, column::h,
                           column::steps,           column::iterations, column::factorizations,
                           column::refactorizations} +
-        columns_of_times(baseline) + Columns<TimedRun>{column::cpu_seconds_of_repeats, column::status};
+        columns_of_times(timed_baseline) + Columns<TimedRun>{column::cpu_seconds_of_repeats, column::status};
     for (const Benchmark& c : all) {
         s.text << fmt::format("\n{}, end time {:g} s: thread CPU time per step\n", c.problem.name, c.end);
         columns.print(s.text, runs.of(c),
@@ -66,10 +66,10 @@ void timing(StudyContext& s)
     s.figures = {"timing.png"};
     s.results(columns, runs);
     for (size_t k = 0; k < runs.size(); ++k)
-        if (runs[k].scheme->name == baseline) s.measured[k].value.erase("ratio_to_full");
+        if (runs[k].scheme->name == timed_baseline) s.measured[k].value.erase("ratio_to_full");
 }
 
-const bool registered =
+const bool registered_timing =
     io::Registry<Study>::add({.name = "timing",
                               .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
                               .accepted = takes::repeats | takes::strict,

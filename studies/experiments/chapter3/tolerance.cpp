@@ -126,7 +126,7 @@ void tolerance(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_tolerance = io::Registry<Study>::add(
     {.name = "tolerance",
      .answers = "errors and Newton iterations over the tolerance of Newton's method (Sec. 3.8.2)",
      .accepted = takes::reference | takes::strict | takes::shard,

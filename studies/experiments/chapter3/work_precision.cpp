@@ -101,7 +101,7 @@ void work_precision(StudyContext& s)
     s.end_of_runs(run_pointers(runs));
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_work_precision = io::Registry<Study>::add(
     {.name = "work-precision",
      .answers = "error against CPU time of all integrators, including those with step-size control",
      .accepted = takes::reference | takes::rtols | takes::repeats | takes::strict,

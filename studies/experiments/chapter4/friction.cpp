@@ -189,7 +189,7 @@ void friction_experiments(StudyContext& s)
     s.json = {{"criteria", checks.size()}, {"passed", passed}, {"checks", rows}};
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_friction = io::Registry<Study>::add(
     {.name = "friction",
      .answers =
          "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "

@@ -54,9 +54,10 @@ struct InclineCell {
     void transfer(io::Archive& a) { a.value(state), a.value(v), a.value(R_omega); }
 };
 
-const Columns<InclineCell> columns = {{"eta_r", &InclineCell::eta},   {"angle_deg", &InclineCell::angle},
-                                      {"state", &InclineCell::state}, {"published", &InclineCell::published},
-                                      {"v", &InclineCell::v},         {"R_omega", &InclineCell::R_omega}};
+const Columns<InclineCell> incline_columns = {
+    {"eta_r", &InclineCell::eta},   {"angle_deg", &InclineCell::angle},
+    {"state", &InclineCell::state}, {"published", &InclineCell::published},
+    {"v", &InclineCell::v},         {"R_omega", &InclineCell::R_omega}};
 
 /// States over η_r (rows) and slope (columns)
 struct StateMap {
@@ -176,10 +177,10 @@ std::vector<Criterion> criteria(const InclineGrid& g, const Deviations& d, bool 
 Criterion compare(StudyContext& s, const StateMap& map)
 {
     const auto rows = static_cast<long>(map.grid.eta.size()),
-               columns = static_cast<long>(map.grid.angle.size());
+               incline_columns = static_cast<long>(map.grid.angle.size());
     const auto has_neighbour = [&](long e, long a, int state) {
         for (long k = std::max(0L, e - 1); k <= std::min(rows - 1, e + 1); ++k)
-            for (long l = std::max(0L, a - 1); l <= std::min(columns - 1, a + 1); ++l)
+            for (long l = std::max(0L, a - 1); l <= std::min(incline_columns - 1, a + 1); ++l)
                 if (map.at(k, l).published == state) return true;
         return false;
     };
@@ -187,7 +188,7 @@ Criterion compare(StudyContext& s, const StateMap& map)
     long far = 0;  // cells that differ, and no neighbour in the published map has the computed state
     std::array<std::array<long, 4>, 4> count = {};  // [published state][computed state]
     for (long e = 0; e < rows; ++e)
-        for (long a = 0; a < columns; ++a) {
+        for (long a = 0; a < incline_columns; ++a) {
             const InclineCell& cell = map.at(e, a);
             if (!(cell.published >= 0 && cell.published <= 3) || cell.state < 0) continue;
             ++compared;
@@ -252,7 +253,7 @@ void incline_sweep(StudyContext& s)
 
     const std::vector<Boundaries> rows = boundaries(map);
     const Deviations d = deviations(rows);
-    s.table = columns.csv(map.cells);
+    s.table = incline_columns.csv(map.cells);
     s.figures = {"incline-sweep.png"};
     s.text << fmt::format(
         "\nfinal state of a sphere pushed up an incline at 0.5 m/s, after {:g} s; {} friction, h = {:g} s\n",
@@ -276,7 +277,7 @@ void incline_sweep(StudyContext& s)
     if (s.options.check) s.evaluate(checks);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_incline_sweep = io::Registry<Study>::add(
     {.name = "incline-sweep",
      .answers = "final state of a sphere pushed up an incline, over slope and rolling resistance (Fig. "
                 "4.13); default "

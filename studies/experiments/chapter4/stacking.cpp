@@ -40,8 +40,8 @@ std::vector<double> etas()
 }
 
 /// Grids of --grid; the first is the default
-const std::vector<StackGrid> grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
-                                      {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
+const std::vector<StackGrid> stack_grids = {{"dissertation", {0.20, 0.25, 0.30, 0.35, 0.40}, etas()},
+                                            {"coarse", {0.20, 0.40}, {0.15, 0.21, 0.24, 0.60}}};
 
 struct StackCell {
     Stack stack = {};                           ///< the upper sphere has the critical mass
@@ -192,7 +192,7 @@ std::vector<Criterion> criteria(const std::vector<MassCurve>& curves, const Stac
 std::vector<std::string> keys()
 {
     std::vector<std::string> all = {"rms", "largest", "undecided"};
-    for (const double gap : grids.front().gaps)
+    for (const double gap : stack_grids.front().gaps)
         for (const char* what : {"peak_eta_", "peak_mass_", "plateau_"}) all.push_back(what + gap_text(gap));
     return all;
 }
@@ -256,7 +256,7 @@ void add_snapshots(StudyContext& s, const std::vector<StackCell>& cells, double 
 
 void stacking(StudyContext& s)
 {
-    const GridOptions o = grid_options(s, 1e-4, 10, grids);
+    const GridOptions o = grid_options(s, 1e-4, 10, stack_grids);
     std::vector<StackCell> cells;
     std::vector<std::pair<double, double>> places;  // η_r, gap
     for (const double gap : o.grid.gaps)
@@ -324,7 +324,7 @@ void stacking(StudyContext& s)
     add_snapshots(s, of_figures, o.h, o.end);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_stacking = io::Registry<Study>::add(
     {.name = "stacking",
      .answers =
          "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "

@@ -336,7 +336,7 @@ void evolving_contact(StudyContext& s)
     s.end_of_runs(expected_to_finish);
 }
 
-const bool registered =
+const bool registered_evolving_contact =
     io::Registry<Study>::add({.name = "evolving-contact",
                               .answers = "ball in an ellipsoidal bowl, contact points as unknowns: forces, "
                                          "residuals and energy (Figs. 5.2-5.6)",

@@ -30,7 +30,7 @@ namespace {
 using reference::ContactInstant;
 using reference::PlanarBowl;
 
-constexpr double default_step = 2.5e-3, default_end = 10;
+constexpr double friction_step = 2.5e-3, friction_end = 10;
 constexpr double y_start = 1.5;       // y of the contact point at the start [m]
 constexpr double transient = 0.1;     // duration of the transient after the release [s]
 constexpr double comparison_end = 3;  // end of the comparison with the one-angle equation [s]
@@ -45,7 +45,7 @@ struct BrakedVariant {
     double stop_time = std::nan("");     ///< [s]
     std::vector<double> reversals = {};  ///< y of the contact point at the reversals of motion [m]
 };
-const std::vector<BrakedVariant> variants = {
+const std::vector<BrakedVariant> braked_variants = {
     {.name = "eta-0", .eta_r = 0},
     {.name = "eta-0.1",
      .eta_r = 0.1,
@@ -56,7 +56,7 @@ const std::vector<BrakedVariant> variants = {
     {.name = "eta-0.3", .eta_r = 0.3, .y_rest = -0.3250, .stop_time = 2.309}};
 
 /// Quantities recorded at every node, columns of curves.csv
-const std::vector<std::string> quantities = {"t", "y", "z", "F_N", "F_f", "torque", "v", "omega"};
+const std::vector<std::string> braked_quantities = {"t", "y", "z", "F_N", "F_f", "torque", "v", "omega"};
 
 struct BrakedRun : RecordedRun<BrakedVariant> {
     std::vector<lie::Vec3> r;  ///< centre of the ball, for the comparison with the one-angle equation
@@ -122,7 +122,7 @@ void compute(BrakedRun& run, const StudyOptions& options)
     const contact::EvolvingContact& contact = *braked.constraint;
     const contact::EvolvingFriction& friction = *braked.friction;
     run.bound = model.stable_step(run.c->started->x).h;
-    run.curve = Curve(quantities);
+    run.curve = Curve(braked_quantities);
     AtNodes sampler([&](const lie::State& x) {
         const lie::Motion& ball = x.body[0];
         const contact::Wrench by = friction.friction(x);
@@ -145,7 +145,7 @@ void check_run(const BrakedRun& run, const BrakedRun* half, std::vector<Criterio
         checks.equals("largest friction after 0.1 s [N]", run.max_friction(), 1.007, 5e-3);
         checks.between("error of the friction relative to the one-angle equation [N]", run.error_F_f, 0,
                        scheme == 0 ? 1e-2 : 5e-3);
-        if (run.h != default_step || scheme > 1) return;
+        if (run.h != friction_step || scheme > 1) return;
         if (scheme == 0)
             checks.equals("error of position, 3 s [m]", run.error_r, 2.3e-3, 1e-4);
         else
@@ -170,7 +170,7 @@ Curve ideal(const BrakedVariant& variant, double end)
     std::vector<double> instants;
     for (size_t k = 0; k < ideal_rows; ++k)
         instants.push_back(end * static_cast<double>(k) / static_cast<double>(ideal_rows - 1));
-    Curve curve(quantities);
+    Curve curve(braked_quantities);
     for (const ContactInstant& at :
          PlanarBowl{}.resist({.y = y_start}, {.eta = variant.eta_r}, instants).instant)
         curve.add({at.t, at.p.y(), at.p.z(), at.F_N, at.F_t.norm(), at.moment.norm(), at.body.rdot.norm(),
@@ -196,9 +196,9 @@ const Columns<BrakedRun> columns = {
 void evolving_friction(StudyContext& s)
 {
     const StudyOptions& options = s.options;
-    const std::vector<double> steps = s.steps({default_step});
+    const std::vector<double> steps = s.steps({friction_step});
     const Schemes schemes = s.fixed_step_schemes({recommended_scheme});
-    const std::vector<const BrakedVariant*> selected = selected_parts(s, "scene", variants);
+    const std::vector<const BrakedVariant*> selected = selected_parts(s, "scene", braked_variants);
     std::vector<Benchmark> benchmarks;
     for (const BrakedVariant* variant : selected) {
         Problem p = problem("braked_ball_in_bowl");
@@ -206,7 +206,7 @@ void evolving_friction(StudyContext& s)
         p.model = dae::read_model(p.model, p.name, std::vector<std::string>{eta_r}).text;
         p.name = variant->name;
         benchmarks.push_back(
-            make_benchmark(std::move(p), options, [](const dae::Description&) { return default_end; }));
+            make_benchmark(std::move(p), options, [](const dae::Description&) { return friction_end; }));
         check_steps(s.name, benchmarks.back(), steps);
     }
 
@@ -219,7 +219,7 @@ void evolving_friction(StudyContext& s)
         for (const lie::Scheme* scheme : schemes)
             for (const double h : steps) {
                 add(k, *scheme, h, false);
-                if (options.check && selected[k]->eta_r == 0 && h == default_step)
+                if (options.check && selected[k]->eta_r == 0 && h == friction_step)
                     add(k, *scheme, h / 2, true);
             }
     runs.compute(s, [&](BrakedRun& run) { compute(run, options); });
@@ -228,9 +228,9 @@ void evolving_friction(StudyContext& s)
               "force after 0.1 s; error r: largest position error over the first 3 s (eta_r = 0)\n";
     columns.print(s.text, runs);
     const double end = benchmarks.front().end;
-    const bool published_setup = options.set.empty() && end == default_end;
+    const bool published_setup = options.set.empty() && end == friction_end;
     std::vector<Criterion> checks;
-    CurveTable curves({"eta_r", "run", "h"}, quantities);
+    CurveTable curves({"eta_r", "run", "h"}, braked_quantities);
     for (const BrakedVariant* variant : selected) {
         for (const BrakedRun* run :
              those(runs, [&](const BrakedRun& r) { return r.variant == variant && !r.for_check; })) {
@@ -256,7 +256,7 @@ void evolving_friction(StudyContext& s)
     s.end_of_runs(run_pointers(runs));
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_evolving_friction = io::Registry<Study>::add(
     {.name = "evolving-friction",
      .answers = "ball in a bowl with friction and rolling resistance: motion, forces and "
                 "rest position (Figs. 5.7, 5.8)",

@@ -146,7 +146,7 @@ void evolving_order(StudyContext& s)
     if (s.options.check) s.evaluate(criteria(all));
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_evolving_order = io::Registry<Study>::add(
     {.name = "evolving-order",
      .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
      .accepted = takes::reference | takes::check | takes::normal_rows | takes::strict | takes::shard,

@@ -185,7 +185,7 @@ std::vector<Study> all()
     return studies;
 }
 
-const bool registered = register_studies(all);
+const bool registered_granular_validation = register_studies(all);
 
 }  // namespace
 

@@ -299,7 +299,7 @@ void contact_methods(StudyContext& s)
     s.table = columns.csv(runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_contact_methods = io::Registry<Study>::add(
     {.name = "contact-methods",
      .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
                 "number of contacts (Sec. 8.2)",

@@ -310,7 +310,7 @@ void sweep(StudyContext& s)
     s.results(columns, runs);
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_sweep = io::Registry<Study>::add(
     {.name = "sweep",
      .answers = "one model over a grid of values of its entries (--sweep): end states, energy, largest loads",
      .accepted = takes::sweep | takes::rtol | takes::strict | takes::shard,

@@ -7,7 +7,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_contacts = io::Registry<SinkType>::add(
     {.name = "contacts",
      .options = {{.name = "--contacts",
                   .help = "write contacts.csv as well: normal force, gap, contact point, friction, slip"}},

@@ -170,7 +170,7 @@ void check_sequence(const std::string& name, const std::string& text)
             text + "'");
 }
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_euler = io::Registry<SinkType>::add(
     {.name = "euler",
      .options = {{.name = option,
                   .value = "SEQUENCE",

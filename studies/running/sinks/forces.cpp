@@ -7,7 +7,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_forces = io::Registry<SinkType>::add(
     {.name = "forces",
      .options = {{.name = "--forces",
                   .help = "write forces.csv as well: lengths, angles and forces of springs and limits"}},

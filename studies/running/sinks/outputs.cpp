@@ -7,7 +7,7 @@ namespace hilda::studies {
 
 namespace {
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_outputs = io::Registry<SinkType>::add(
     {.name = "outputs",
      .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {
          if (run.outputs.empty()) return nullptr;

@@ -41,7 +41,7 @@ private:
     const double h;
 };
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_steps = io::Registry<SinkType>::add(
     {.name = "steps",
      .options = {{.name = "--log-steps", .help = "write steps.csv as well, a row for each step"}},
      .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {

@@ -91,7 +91,7 @@ private:
     std::vector<Sums> sums;  ///< of each tool
 };
 
-const bool registered =
+const bool registered_tools =
     io::Registry<SinkType>::add({.name = "tools",
                                  .make = [](const RunSetup& run) -> std::unique_ptr<io::Sink<RunNode>> {
                                      if (run.coupling == nullptr) return nullptr;

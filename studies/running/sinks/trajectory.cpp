@@ -120,7 +120,7 @@ private:
     std::vector<dae::Reaction> reactions;
 };
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_trajectory = io::Registry<SinkType>::add(
     {.name = "trajectory",
      .options = {{.name = "--reactions",
                   .help = "write constraint forces and multipliers to trajectory.csv as well"}},

@@ -58,7 +58,7 @@ std::unique_ptr<io::Sink<RunNode>> make(const RunSetup& run)
     return std::make_unique<Vtk>(run, at);
 }
 
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_vtk = io::Registry<SinkType>::add(
     {.name = "vtk",
      .options = {{.name = "--vtk",
                   .value = "DT",

@@ -11,7 +11,7 @@ namespace {
 void check_format(const std::string& option, const std::string& text) { table_format(option, text); }
 
 // A sink type without a sink: the format belongs to the tables of all sinks.
-const bool registered = io::Registry<SinkType>::add(
+const bool registered_run_table = io::Registry<SinkType>::add(
     {.name = "format",
      .options = {{.name = format_option,
                   .value = "csv|hdf5",

@@ -253,7 +253,7 @@ void run_study(StudyContext& s)
     s.figures = {s.name + ".png"};
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_granular_bucket = io::Registry<Study>::add(
     {.name = "granular-bucket",
      .answers = "two-link arm whose bucket digs in a bed of grains, in co-simulation",
      .accepted = takes::check | takes::grid | takes::shard,

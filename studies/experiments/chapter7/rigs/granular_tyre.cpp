@@ -401,7 +401,7 @@ void run_study(StudyContext& s)
     s.figures = {s.name + ".png"};
 }
 
-const bool registered = io::Registry<Study>::add(
+const bool registered_granular_tyre = io::Registry<Study>::add(
     {.name = "granular-tyre",
      .answers = "single-wheel rig with a tyre, imposed and free slip, in co-simulation (Figs. 7.20-7.25)",
      .accepted = takes::check | takes::grid | takes::shard,

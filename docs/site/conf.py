@@ -28,7 +28,6 @@ needs_sphinx = "5.3"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 6
 myst_dmath_allow_space = False
-myst_dmath_allow_digits = False
 
 breathe_projects = {"hilda": str(WORK / "doxygen" / "xml")}
 breathe_default_project = "hilda"
@@ -53,7 +52,7 @@ html_copy_source = False
 html_show_sphinx = False
 html_theme_options = {"navigation_with_keys": True}
 pygments_style = "friendly"
-highlight_language = "none"  # blocks without a language are equations and output
+highlight_language = "none"  # blocks without a language are output and equations of comments
 copybutton_prompt_text = "$ "
 
 

@@ -1,37 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Formulas, rendered by KaTeX while the site is built: the pages need no script, only the style sheet and fonts of KaTeX.
 
-KaTeX is the one of Debian (libjs-katex), run by nodejs. A formula with an error is a warning with its page.
+Formulas are $...$ in the text and blocks ```math, which GitHub renders as well. A formula with an error is a warning with its page.
 """
-import json
 import pathlib
 import re
 import shutil
-import subprocess
 
 from docutils import nodes
 from sphinx.util import logging
 
-KATEX = pathlib.Path("/usr/share/javascript/katex")
-PROGRAM = """
-const katex = require(process.argv[1]);
-const formulas = JSON.parse(require("fs").readFileSync(0, "utf8"));
-process.stdout.write(JSON.stringify(formulas.map(([text, display]) => {
-    try {
-        return {html: katex.renderToString(text, {displayMode: display, output: "htmlAndMathml", strict: "ignore"})};
-    } catch (error) {
-        return {error: String(error.message)};
-    }
-})));
-"""
+from katex import KATEX, render
+
 logger = logging.getLogger(__name__)
 
 
-def render(formulas):
-    """The HTML of each pair (text, whether it is displayed), or its error"""
-    done = subprocess.run(["node", "-e", PROGRAM, str(KATEX / "katex.js")], input=json.dumps(formulas), capture_output=True, text=True,
-                          check=True)
-    return json.loads(done.stdout)
+def is_displayed(node):
+    return isinstance(node, (nodes.math_block, nodes.literal_block))
+
+
+def take_punctuation(node):
+    """Removes the bracket before and the punctuation after a formula of the text, and returns both."""
+    found = []
+    for step, pattern in ((-1, r"[(\[]+$"), (1, r"^[.,;:!?)\]]+")):
+        place = node.parent.index(node) + step
+        text = node.parent[place] if 0 <= place < len(node.parent) else None
+        match = re.search(pattern, text.astext()) if isinstance(text, nodes.Text) else None
+        found.append(match[0] if match else "")
+        if match:
+            node.parent[place] = nodes.Text(text.astext()[:match.start()] + text.astext()[match.end():])
+    return found
 
 
 def render_all(app, doctree, docname):
@@ -39,16 +37,22 @@ def render_all(app, doctree, docname):
     if app.builder.format != "html":
         return
     found = [*doctree.findall(nodes.math), *doctree.findall(nodes.math_block)]
+    found += [node for node in doctree.findall(nodes.literal_block) if node.get("language") == "math"]
     if not found:
         return
-    results = render([(node.astext(), isinstance(node, nodes.math_block)) for node in found])
+    results = render([(node.astext(), is_displayed(node)) for node in found])
     for node, result in zip(found, results):
         if "error" in result:
             logger.warning("formula %s: %s", node.astext(), result["error"], location=node)
             continue
-        block = isinstance(node, nodes.math_block)
-        tag = "div" if block else "span"
-        text = f'<{tag} class="formula">{result["html"]}</{tag}>'
+        html = result["html"]
+        if is_displayed(node):
+            text = f'<div class="formula">{html}</div>'
+        elif html.count('class="base"') <= 2:  # short: a line break would separate it from its punctuation
+            before, after = take_punctuation(node)
+            text = f'<span class="formula unbroken">{before}{html}{after}</span>'
+        else:
+            text = f'<span class="formula">{html}</span>'
         node.replace_self(nodes.raw("", text, format="html"))
 
 
@@ -76,4 +80,3 @@ def setup(app):
     app.connect("build-finished", add_files)
     app.add_css_file("katex/katex.min.css")
     return {"parallel_read_safe": True, "parallel_write_safe": True}
-

@@ -55,8 +55,6 @@ void handle(void (*handler)(int))
     }
 }
 
-struct sigaction before_interrupt[std::size(interrupts)];  // of an Interrupt
-
 }  // namespace
 
 int run_program(const std::function<int()>& program)
@@ -114,14 +112,12 @@ void Verbosity::log(const std::string& what) const
 
 Interrupt::Interrupt()
 {
-    for (size_t k = 0; k < std::size(interrupts); ++k)
-        sigaction(interrupts[k], nullptr, &before_interrupt[k]);
+    for (size_t k = 0; k < std::size(interrupts); ++k) sigaction(interrupts[k], nullptr, &before[k]);
     handle(record_signal);
 }
 Interrupt::~Interrupt()
 {
-    for (size_t k = 0; k < std::size(interrupts); ++k)
-        sigaction(interrupts[k], &before_interrupt[k], nullptr);
+    for (size_t k = 0; k < std::size(interrupts); ++k) sigaction(interrupts[k], &before[k], nullptr);
 }
 EndOnSignal::EndOnSignal(const std::string& message)
 {

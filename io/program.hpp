@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <csignal>
 #include <functional>
 #include <string>
 
@@ -52,7 +53,7 @@ struct Verbosity {
 /// of the run, the second terminates the process.
 ///
 /// During the lifetime of an object of this class, the first of these signals is recorded and does not end
-/// the program. The handlers of before are restored at its end. There is one such object at a time.
+/// the program. The handlers of before are restored at its end. Objects may be nested; they share the record.
 class Interrupt {
 public:
     Interrupt();
@@ -64,6 +65,9 @@ public:
     static int caught();
     /// Forgets the recorded signal, in a program that continues after it.
     static void forget();
+
+private:
+    struct sigaction before[3] = {};  // of SIGINT, SIGTERM, SIGHUP
 };
 
 /// During the lifetime of an object of this class, SIGINT, SIGTERM and SIGHUP end the process at once, with

@@ -31,6 +31,7 @@ class Browser:
             self.driver.kill()
             raise
         self.url += "/session/" + answer["sessionId"]
+        self.call("POST", "/timeouts", {"script": None, "pageLoad": 24 * 3600 * 1000})  # a large page takes long on a busy machine
         self.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setDeviceMetricsOverride", "params": {
             "width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}})
 
@@ -38,7 +39,7 @@ class Browser:
         body = None if data is None else json.dumps(data).encode()
         request = urllib.request.Request(self.url + path, body, {"Content-Type": "application/json"}, method=method)
         try:
-            with urllib.request.urlopen(request, timeout=120) as answer:
+            with urllib.request.urlopen(request) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -55,7 +56,7 @@ class Browser:
         self.call("POST", "/execute/async", {"script": script, "args": [t]})
 
     def wait(self, condition, seconds=20):
-        """Waits until the expression is true. Returns the time [s]."""
+        """Waits until the expression is true, at most this time. Returns the time [s]."""
         start = time.monotonic()
         while not self.run("return " + condition):
             if time.monotonic() - start > seconds:

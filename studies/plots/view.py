@@ -401,7 +401,7 @@ def write_video(path, data, seconds):
     with tempfile.TemporaryDirectory() as folder, browser.Browser(*VIDEO_SIZE) as window:
         write_whole(os.path.join(folder, "view.html"), page(data))
         window.open("file://" + os.path.join(folder, "view.html"))
-        window.wait("viewer.ready || viewer.errors.length")
+        window.wait("viewer.ready || viewer.errors.length", seconds=math.inf)
         window.run("viewer.picture_only()")
         words = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(VIDEO_RATE), "-c:v", "png", "-i", "-",
                  "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-f", "mp4", path + ".new"]

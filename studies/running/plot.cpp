@@ -5,6 +5,7 @@
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "io/message.hpp"
+#include "io/program.hpp"
 #include "lie/check.hpp"
 
 #include <hilda/version.hpp>
@@ -17,7 +18,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -25,7 +25,6 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -67,53 +66,56 @@ std::string find_script(const std::string& script)
 }
 
 struct ProcessResult {
-    int code = -1;          ///< -1: the process could not be started; 128 + N: ended by signal N
-    std::string output;     ///< stdout and stderr together
-    bool too_slow = false;  ///< killed at the time limit
+    int code = -1;             ///< -1: the process could not be started; 128 + N: ended by signal N
+    std::string output;        ///< stdout and stderr together
+    bool interrupted = false;  ///< ended because this process has received a signal
 };
 
-using Clock = std::chrono::steady_clock;
+/// The end of the present process is requested by a signal that has come since the construction. See
+/// io::Interrupt.
+class NewSignal {
+public:
+    bool has_come() const { return io::Interrupt::caught() != before; }
 
-/// Time until `end`, for poll(). At least 0
-int milliseconds_until(Clock::time_point end)
-{
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
-    return static_cast<int>(std::clamp<decltype(left)>(left, 0, std::numeric_limits<int>::max()));
-}
+private:
+    const int before = io::Interrupt::caught();
+};
 
-/// Appends what is read until the end of the file. False at the time limit
-bool read_until(int descriptor, Clock::time_point end, std::string& output)
+// A signal may be received by another thread, and does not end poll() then.
+constexpr int signal_test_interval = 50;  // [ms]
+
+/// Appends what is read until the end of the file. False after a signal
+bool read_all(int descriptor, const NewSignal& signal, std::string& output)
 {
     std::array<char, 4096> chunk{};
-    while (true) {
+    while (!signal.has_come()) {
         pollfd ready = {.fd = descriptor, .events = POLLIN, .revents = 0};
-        const int left = milliseconds_until(end), polled = poll(&ready, 1, left);
-        if (polled == 0 || left == 0) return false;
-        if (polled < 0 && errno == EINTR) continue;
+        const int polled = poll(&ready, 1, signal_test_interval);
+        if (polled == 0 || (polled < 0 && errno == EINTR)) continue;
         const ssize_t n = read(descriptor, chunk.data(), chunk.size());
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return true;
         if (output.size() < 1 << 20) output.append(chunk.data(), static_cast<size_t>(n));
     }
+    return false;
 }
 
-/// Waits for the end of a process. False at the time limit
-bool wait_until(pid_t child, Clock::time_point end, int& status)
+/// Waits for the end of a process. False after a signal
+bool wait_for_end(pid_t child, const NewSignal& signal, int& status)
 {
-    while (true) {
+    while (!signal.has_come()) {
         const pid_t ended = waitpid(child, &status, WNOHANG);
         if (ended == child || (ended < 0 && errno != EINTR)) return true;
-        if (milliseconds_until(end) == 0) return false;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
+    return false;
 }
 
-/// Runs a program without a shell and waits for it, at most `limit` seconds. At most about 1 MiB of its
-/// output is stored.
-ProcessResult run(std::vector<std::string> words, double limit)
+/// Runs a program without a shell and waits for it. At most about 1 MiB of its output is stored. There is no
+/// time limit: a figure takes long on a busy machine. SIGINT, SIGTERM and SIGHUP end the program.
+ProcessResult run_until(const NewSignal& signal, std::vector<std::string> words)
 {
-    const Clock::time_point end =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit));
+    const io::Interrupt interrupt;
     std::array<int, 2> pipe_ends{};
     if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return {};
     std::vector<char*> argv;
@@ -133,8 +135,9 @@ ProcessResult run(std::vector<std::string> words, double limit)
     ProcessResult result;
     if (error == 0) {
         int status = 0;
-        result.too_slow = !read_until(pipe_ends[0], end, result.output) || !wait_until(child, end, status);
-        if (result.too_slow) {
+        result.interrupted =
+            !read_all(pipe_ends[0], signal, result.output) || !wait_for_end(child, signal, status);
+        if (result.interrupted) {
             kill(child, SIGKILL);
             while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
             }
@@ -145,6 +148,19 @@ ProcessResult run(std::vector<std::string> words, double limit)
     return result;
 }
 
+/// The same. The present process then receives the signal again, with the handlers of before.
+ProcessResult run(std::vector<std::string> words)
+{
+    const NewSignal signal;
+    ProcessResult result = run_until(signal, std::move(words));
+    if (signal.has_come()) {
+        const int number = io::Interrupt::caught();
+        io::Interrupt::forget();
+        std::raise(number);
+    }
+    return result;
+}
+
 std::string last_line(std::string text)
 {
     while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -152,9 +168,9 @@ std::string last_line(std::string text)
 }
 
 /// One line with the reason why a Python process failed; empty if it succeeded
-std::string failure_reason(const ProcessResult& result, double limit)
+std::string failure_reason(const ProcessResult& result)
 {
-    if (result.too_slow) return fmt::format("{} did not end within {:g} s and was stopped", python(), limit);
+    if (result.interrupted) return "interrupted; hilda plot draws them";
     if (result.code == 0) return {};
     if (result.code > 128)
         return fmt::format("{} was ended by signal {} ({})", python(), result.code - 128,
@@ -195,14 +211,13 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     add("--format", options.formats);
     add("--integrator", options.integrators);
     add("--quantity", options.quantities);
-    const ProcessResult result = path.empty() ? ProcessResult{} : run(std::move(words), options.time_limit);
+    const ProcessResult result = path.empty() ? ProcessResult{} : run(std::move(words));
     constexpr int refused = 2;  // see studies/plots/options.py
     if (result.code == refused && !(options.integrators.empty() && options.quantities.empty()))
         throw io::UsageError("plot: " + last_line(result.output));
     constexpr int damaged = 5;  // see studies/plots/drawing.py
     if (result.code == damaged) throw io::IoError(last_line(result.output));
-    const std::string why =
-        path.empty() ? "the script " + script + " was not found" : failure_reason(result, options.time_limit);
+    const std::string why = path.empty() ? "the script " + script + " was not found" : failure_reason(result);
     if (!why.empty()) {
         io::warning("no figures: " + why);
         return std::nullopt;
@@ -281,9 +296,8 @@ std::string python_and_matplotlib()
         run({python(), "-c",
              // Without the current folder, in which there may be another matplotlib.py
              "import sys; sys.path = [p for p in sys.path if p]; import matplotlib; "
-             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"},
-            FigureOptions{}.time_limit);
-    const std::string why = failure_reason(result, FigureOptions{}.time_limit);
+             "print(sys.version.split()[0] + ', matplotlib ' + matplotlib.__version__)"});
+    const std::string why = failure_reason(result);
     return why.empty() ? python() + " " + last_line(result.output) : why;
 }
 

@@ -19,13 +19,14 @@ struct FigureOptions {
     std::vector<std::string> integrators =
         {};  ///< the curves to show; empty: the choice of the script, at most eight
     std::vector<std::string> quantities = {};  ///< the panels to show; empty: all that have values
-    double time_limit = 60;                    ///< of the script, which is stopped then [s]
 };
 
 /// Runs a script, for example "convergence.py", on a directory, and returns the names of the files that it
 /// has written. Returns nothing after a one-line warning on stderr if Python, matplotlib or the script is
-/// missing, or if the script fails, exceeds the time limit or writes no figure. io::UsageError if the results
-/// do not have an integrator or a quantity of the options.
+/// missing, or if the script fails or writes no figure. io::UsageError if the results do not have an
+/// integrator or a quantity of the options.
+///
+/// The script has no time limit. SIGINT (Ctrl-C), SIGTERM and SIGHUP end it; their handlers are called then.
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options = {});
 

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t largest_table = size_t(2) << 30;  // [byte]
-constexpr double time_limit = 600;                 // of the script [s]
 
 bool has_file(const fs::path& file)
 {

@@ -152,18 +152,39 @@ TEST_CASE("a Python that fails without a message is reported, and no figure is l
     }
 }
 
-TEST_CASE("a Python that does not end is stopped at the time limit", "[studies][figures]")
+TEST_CASE("a signal ends a Python that draws without an end", "[studies][figures]")
 {
     const Scratch in;
-    CHECK(studies::FigureOptions{}.time_limit == 60);
+    REQUIRE(call(in, {"run", "double_pendulum", "--end", "0.01", "--output", "a"}).code == 0);
+    const std::string python = (in / "python").string(), started = (in / "started").string();
     // one that is silent, one that writes without an end, and one that has closed its output
-    for (const char* script :
-         {"exec sleep 100", "while true; do echo trajectory.png; done", "exec >&- 2>&-; exec sleep 100"}) {
-        const OtherPython python(in, script);
-        const auto begin = std::chrono::steady_clock::now();
-        CHECK_FALSE(studies::plot("trajectory.py", in.path.string(), {.time_limit = 0.2}));
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-        CHECK(taken.count() >= 0.2);
-        CHECK(taken.count() < 20);
-    }
+    const char* script = GENERATE("exec sleep 1000", "while true; do echo trajectory.png; done",
+                                  "exec >&- 2>&-; exec sleep 1000");
+    const int signal = GENERATE(SIGINT, SIGTERM);
+    write(python, "#!/bin/sh\necho $$ > " + started + "\n" + script + "\n");
+    fs::permissions(python, fs::perms::owner_all);
+    const auto interrupted = [&](const std::vector<std::string>& arguments) {
+        fs::remove(started);
+        const Program program(in, arguments, {.python = python});
+        REQUIRE(appears(started));
+        program.send(signal);
+        Ended ended = program.wait();
+        CHECK(kill(std::stoi(read(started)), 0) != 0);  // The program has waited for the end of Python.
+        return ended;
+    };
+    CAPTURE(script, signal);
+    CHECK(interrupted({"plot", "a"}).code == 128 + signal);
+
+    // The results of the run are complete.
+    const Ended run =
+        interrupted({"run", "double_pendulum", "--end", "0.01", "--plot", "--output", "b", "--force"});
+    CHECK(run.code == 0);
+    CHECK_THAT(run.err, Contains("no figures: interrupted; hilda plot draws them"));
+    CHECK_THAT(read(in / "b/summary.json"), Contains("\"status\": \"ok\""));
+
+    const Ended study = interrupted({"study", "energy", "--problem", "double_pendulum", "--integrator",
+                                     "rA-half-1", "--end", "0.1", "--output", "c", "--force"});
+    CHECK(study.code == 128 + signal);
+    CHECK_THAT(study.err, Contains("interrupted; the finished runs are kept in c"));
+    CHECK(fs::exists(in / "c/study.csv"));
 }

@@ -61,7 +61,8 @@ int validate(const Validation& v, ValidationOptions options, bool quiet, bool st
 {
     io::ProgressLine line(quiet);
     options.progress = [&](double share) {
-        if (line.is_due()) line.show(v.name + ' ' + std::to_string(std::lround(100 * share)) + " %");
+        line.completed(share);
+        line.show(v.name);
     };
     if (!quiet)
         options.announce = [&](const std::string& text) {

@@ -473,8 +473,9 @@ private:
         const double left =
             rate_now > 0 ? (c.end - w.t()) / c.h * static_cast<double>(w.count()) / rate_now : 0;
         const std::string grains = has_flow() ? io::formatted("%zu particles, ", w.count()) : "";
-        return io::formatted("t = %.4g of %.4g s, %s%.3g million particle-steps/s, %.0f s left", w.t(), c.end,
-                             grains.c_str(), 1e-6 * rate_now, left);
+        return io::formatted("t = %.4g of %.4g s, %s%.3g million particle-steps/s, %.0f %%, ", w.t(), c.end,
+                             grains.c_str(), 1e-6 * rate_now, std::floor(100 * w.t() / c.end)) +
+               io::duration_text(left) + " left";
     }
 
     /// Whether the number of particles changes

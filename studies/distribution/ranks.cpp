@@ -85,7 +85,7 @@ Ranks::~Ranks()
 }
 
 void Ranks::distribute(std::deque<long> jobs, int processes, const Compute& compute,
-                       const std::function<void(const JobEnd&)>& report)
+                       const std::function<void(const JobEnd&)>& report, const std::function<void()>& wait)
 {
     JobProcesses own(processes, compute);
     size_t left = jobs.size();
@@ -111,6 +111,8 @@ void Ranks::distribute(std::deque<long> jobs, int processes, const Compute& comp
             receive_from(others[received->from], *received, count_and_report);
         else if (const auto end = own.wait(pause_first))
             count_and_report(*end);
+        else
+            wait();
         if (const auto now = Clock::now(); now - tested > interval_of_tests) {
             // After a pause of this process, as of a suspended one, the others have sent messages.
             const bool paused = now - tested > longest_pause;

@@ -35,9 +35,10 @@ public:
     void report_failure(const std::string& what) { all->send(0, failed + what); }
 
     using Compute = std::function<std::string(long)>;
-    /// On rank 0: calls report(end) for the end of each job, in the order of the ends.
+    /// On rank 0: calls report(end) for the end of each job, in the order of the ends, and wait() while it
+    /// waits for them.
     void distribute(std::deque<long> jobs, int processes, const Compute& compute,
-                    const std::function<void(const JobEnd&)>& report);
+                    const std::function<void(const JobEnd&)>& report, const std::function<void()>& wait);
     /// On the other ranks: computes jobs until rank 0 ends this rank.
     void work(int processes, const Compute& compute);
 

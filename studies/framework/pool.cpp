@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <deque>
 #include <exception>
 #include <mutex>
@@ -18,29 +20,106 @@
 
 namespace hilda::studies {
 
+namespace {
+
+/// The progress line of a pool, which several threads use
+class PoolLine {
+public:
+    PoolLine(const std::string& label, long count, const std::function<double(long)>& cost)
+        : label(label), count(count), cost(cost), line(label.empty())
+    {
+        for (long k = 0; k < count; ++k) total += cost(k);
+    }
+
+    bool is_shown() const { return line.is_shown(); }
+    /// Job k has ended. `computed`: not read from a file
+    void ended(long k, bool computed)
+    {
+        const std::lock_guard lock(in_use);
+        ++number;
+        completed += cost(k);
+        if (!computed) read += cost(k);
+        if (total > 0) line.completed(completed / total, read / total);
+        write();
+    }
+    void update()
+    {
+        const std::lock_guard lock(in_use);
+        write();
+    }
+    void clear() { line.clear(); }
+
+private:
+    void write()
+    {
+        if (line.is_due()) line.show(fmt::format("{} {}/{}, {:.0f} s", label, number, count, line.seconds()));
+    }
+
+    const std::string& label;
+    const long count;
+    const std::function<double(long)>& cost;
+    double total = 0, completed = 0, read = 0;  ///< sums of the costs
+    long number = 0;                            ///< of the jobs that have ended
+    std::mutex in_use;
+    io::ProgressLine line;
+};
+
+/// Updates the line each second during the jobs, until the end of its life.
+class PoolClock {
+public:
+    explicit PoolClock(PoolLine& line)
+    {
+        if (!line.is_shown()) return;
+        thread = std::jthread([&line](const std::stop_token& stop) {
+            std::mutex mutex;
+            std::condition_variable_any never;
+            std::unique_lock lock(mutex);
+            while (!stop.stop_requested()) {
+                never.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; });
+                if (!stop.stop_requested()) line.update();
+            }
+        });
+    }
+
+private:
+    std::jthread thread;
+};
+
+}  // namespace
+
 void Pool::run(const std::function<void(long)>& job) const
 {
-    std::atomic<long> next{0}, done{0};
-    std::vector<std::exception_ptr> thrown(count);
-    std::mutex line_in_use;
-    io::ProgressLine line(label.empty());
+    run_here([&](long k) {
+        job(k);
+        return true;
+    });
+}
 
+void Pool::run_here(const std::function<bool(long)>& job) const
+{
+    std::atomic<long> next{0};
+    std::vector<std::exception_ptr> thrown(count);
+    const std::function<double(long)> cost_here = [&](long k) {
+        return sharing == nullptr || sharing->shard.has(k) ? cost(k) : 0;
+    };
+    PoolLine line(label, count, cost_here);
     const auto work = [&] {
         for (long k = next++; k < count; k = next++) {
+            bool computed = true;
             try {
-                job(k);
+                computed = job(k);
             } catch (...) {
                 thrown[k] = std::current_exception();
             }
-            const long n = ++done;
-            const std::lock_guard lock(line_in_use);
-            if (line.is_due()) line.show(fmt::format("{} {}/{}, {:.1f} s", label, n, count, line.seconds()));
+            line.ended(k, computed);
         }
     };
-    std::vector<std::jthread> team;
-    for (long k = 1; k < std::min<long>(threads, count); ++k) team.emplace_back(work);
-    work();
-    team.clear();  // joins
+    {
+        const PoolClock clock(line);
+        std::vector<std::jthread> team;
+        for (long k = 1; k < std::min<long>(threads, count); ++k) team.emplace_back(work);
+        work();
+    }  // joins
     line.clear();
     for (const std::exception_ptr& e : thrown)
         if (e) std::rethrow_exception(e);
@@ -57,12 +136,13 @@ void Pool::run(const std::function<void(long)>& job, const Transfer& transfer, c
     if (sharing->ranks != nullptr) {
         run_on_ranks(pool, job, transfer, lost);
     } else {
-        run([&](long k) {
-            if (!sharing->shard.has(k)) return;
+        run_here([&](long k) {
+            if (!sharing->shard.has(k)) return false;
             const auto result = [&](io::Archive& a) { transfer(a, k); };
-            if (finished != nullptr && finished->restore({pool, k}, result)) return;
+            if (finished != nullptr && finished->restore({pool, k}, result)) return false;
             job(k);
             if (finished != nullptr) finished->keep({pool, k}, result);
+            return true;
         });
     }
     if (sharing->shard.is_part()) throw PartDone{};
@@ -83,16 +163,17 @@ void Pool::run_on_ranks(long pool, const std::function<void(long)>& job, const T
         throw PartDone{};
     }
     FinishedJobs* const finished = sharing->finished;
+    PoolLine line(label, count, cost);
     std::deque<long> jobs;
     for (long k = 0; k < count; ++k) {
         const auto result = [&](io::Archive& a) { transfer(a, k); };
-        if (!sharing->shard.has(k) || (finished != nullptr && finished->restore({pool, k}, result))) continue;
-        jobs.push_back(k);
+        if (!sharing->shard.has(k) || (finished != nullptr && finished->restore({pool, k}, result)))
+            line.ended(k, false);
+        else
+            jobs.push_back(k);
     }
     std::optional<JobEnd> thrown;  // with the lowest number
-    long done = count - static_cast<long>(jobs.size());
-    io::ProgressLine line(label.empty());
-    ranks.distribute(std::move(jobs), threads, compute, [&](const JobEnd& end) {
+    const auto report = [&](const JobEnd& end) {
         const auto result = [&](io::Archive& a) { transfer(a, end.job); };
         if (end.kind == JobEnd::computed) {
             io::Archive a(end.text, "the result of a run");
@@ -105,9 +186,9 @@ void Pool::run_on_ranks(long pool, const std::function<void(long)>& job, const T
             sharing->lost.push_back(end.text);
             if (lost) lost(end.job, end.text);
         }
-        ++done;
-        if (line.is_due()) line.show(fmt::format("{} {}/{}, {:.1f} s", label, done, count, line.seconds()));
-    });
+        line.ended(end.job, true);
+    };
+    ranks.distribute(std::move(jobs), threads, compute, report, [&] { line.update(); });
     line.clear();
     if (thrown) thrown->rethrow();
 }

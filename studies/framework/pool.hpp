@@ -29,11 +29,19 @@ struct JobSharing {
 
 class Pool {
 public:
-    /// `count` jobs on at most `threads` threads, or in as many processes on each rank. On a terminal a
-    /// progress line with this label is shown on stderr; none for "".
+    /// `count` jobs on at most `threads` threads, or in as many processes on each rank. A progress line with
+    /// this label is shown on stderr; none for "".
     Pool(int threads, std::string label, long count, JobSharing* sharing = nullptr)
         : threads(threads), label(std::move(label)), count(count), sharing(sharing)
     {}
+
+    /// The cost of job k relative to the others, for the remaining time of the progress line. Without it all
+    /// jobs have the same cost.
+    Pool& with_cost(std::function<double(long)> of_job)
+    {
+        cost = std::move(of_job);
+        return *this;
+    }
 
     /// Calls job(0) … job(count - 1), each once, started in this order. After all jobs have ended, rethrows
     /// the exception of the lowest job number.
@@ -51,6 +59,8 @@ public:
     void run(const std::function<void(long)>& job, const Transfer& transfer, const Lost& lost = {}) const;
 
 private:
+    /// job(k) returns whether the job was computed. Its result may have been read from a file.
+    void run_here(const std::function<bool(long)>& job) const;
     void run_on_ranks(long pool, const std::function<void(long)>& job, const Transfer& transfer,
                       const Lost& lost) const;
 
@@ -58,6 +68,7 @@ private:
     std::string label;
     long count;
     JobSharing* sharing;
+    std::function<double(long)> cost = [](long) { return 1.0; };
 };
 
 }  // namespace hilda::studies

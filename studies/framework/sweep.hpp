@@ -46,6 +46,7 @@ public:
         std::stable_sort(queue.begin(), queue.end(),
                          [&](size_t a, size_t b) { return (*this)[a].h < (*this)[b].h; });
         study.pool(this->size(), label)
+            .with_cost([&](long k) { return cost((*this)[queue[k]]); })
             .run([&](long k) { compute_row((*this)[queue[k]], job); },
                  [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); },
                  [&](long k, const std::string& how) {
@@ -67,6 +68,8 @@ public:
     }
 
 private:
+    /// Number of steps; of an adaptive run it is not known
+    static double cost(const Row& row) { return row.h > 0 && row.rtol == 0 ? row.c->end / row.h : 1; }
     // With the function of a base class a resumed study would have rows without the results of Row.
     static void transfer(io::Archive& a, Row& row)
     {

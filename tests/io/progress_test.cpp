@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 #include <catch2/catch.hpp>
@@ -61,6 +62,40 @@ private:
     int master = -1, slave = -1, stderr_before = -1;
 };
 
+/// A file that receives stderr while the object exists
+class NoTerminal {
+public:
+    NoTerminal() : file(std::tmpfile()), stderr_before(dup(STDERR_FILENO))
+    {
+        dup2(fileno(file), STDERR_FILENO);
+    }
+    ~NoTerminal()
+    {
+        restore();
+        std::fclose(file);
+    }
+    /// Restores stderr and returns what was written.
+    std::string written()
+    {
+        restore();
+        std::string all;
+        std::rewind(file);
+        for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) all += static_cast<char>(c);
+        return all;
+    }
+
+private:
+    void restore()
+    {
+        if (stderr_before < 0) return;
+        dup2(stderr_before, STDERR_FILENO);
+        close(stderr_before);
+        stderr_before = -1;
+    }
+    std::FILE* file;
+    int stderr_before;
+};
+
 }  // namespace
 
 TEST_CASE("a progress line is rewritten at most five times per second, cut to the terminal, and removed",
@@ -97,4 +132,53 @@ TEST_CASE("no progress line is shown if it is not wanted", "[io][progress]")
         if (line.is_shown()) line.show("shown");
     }
     CHECK(terminal.written().empty());
+}
+
+TEST_CASE("a progress line ends with the completed share and the remaining time", "[io][progress]")
+{
+    Terminal terminal;
+    if (!terminal.is_open()) return;
+    {
+        io::ProgressLine line(false);
+        const auto now = io::ProgressLine::Clock::now();
+        line.completed(0, 0, now);
+        line.show("start", now + 1s);
+        line.completed(0.25, 0, now + 10s);
+        line.show("a text that is longer than the terminal", now + 10s);
+        line.show("t", now + 20s);  // the share is that of 10 s
+        line.show("late", now + 50s);
+        line.completed(1, 0, now + 60s);
+        line.show("t", now + 60s);
+    }
+    CHECK(terminal.written() ==
+          "\rstart, 0 %\033[K\ra , 25 %, 30 s left\033[K\rt, 25 %, 20 s left\033[K\rlate, 25 %\033[K"
+          "\rt, 100 %\033[K\r\033[K");
+}
+
+TEST_CASE("without a terminal progress is a line each minute", "[io][progress]")
+{
+    NoTerminal messages;
+    {
+        io::ProgressLine line(false);
+        const auto now = io::ProgressLine::Clock::now();
+        for (int seconds = 1; seconds < 60; ++seconds) line.show("too early", now + seconds * 1s);
+        line.completed(0.75, 0.5, now + 60s);  // of a run that was resumed at 50 %
+        line.show("first", now + 61s);
+        line.show("too early", now + 120s);
+        line.completed(0.8, 0.5, now + 121s);
+        line.show("a text that is longer than a terminal of twenty columns", now + 121s);
+        line.clear();
+    }
+    CHECK(messages.written() ==
+          "hilda: first, 75 %, 59 s left\n"
+          "hilda: a text that is longer than a terminal of twenty columns, 80 %, 81 s left\n");
+}
+
+TEST_CASE("a duration has the units that matter", "[io][progress]")
+{
+    const std::pair<double, std::string> all[] = {
+        {0.3, "0 s"},         {99.4, "99 s"},      {99.6, "2 min"},         {3600, "60 min"},
+        {6000, "1 h 40 min"}, {7190, "2 h 0 min"}, {172000, "47 h 47 min"}, {172790, "2 d 0 h"},
+        {4e5, "4 d 15 h"}};
+    for (const auto& [seconds, text] : all) CHECK(io::duration_text(seconds) == text);
 }

@@ -17,6 +17,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 
 namespace hilda::studies {
 
@@ -95,9 +96,11 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
             io::message("hilda: study " + study.name + ": " + text + '\n');
         };
     io::ProgressLine line(study.options.quiet);
+    std::optional<double> at_begin;  // of a resumed study
     options.progress = [&](double share) {
-        if (line.is_due())
-            line.show(fmt::format("{} {:.0f} %, {:.1f} s", study.name, 100 * share, line.seconds()));
+        if (!at_begin) at_begin = share;
+        line.completed(share, *at_begin);
+        if (line.is_due()) line.show(fmt::format("{} {:.1f} s", study.name, line.seconds()));
     };
     try {
         granular::ValidationResult result = validation.run(options);

@@ -150,8 +150,8 @@ def contacts_of(table, trajectory, rows):
     return found, largest
 
 
-def mechanism(folder, geometry, most, box):
-    """The poses, meshes, joints, lines and contacts of a run, and its tables"""
+def mechanism(folder, geometry, most, box, ground):
+    """The poses, meshes, joints, lines and contacts of a run, and its tables. `ground`: box of the surfaces of the ground"""
     table = read_table(folder, "trajectory")
     if table is None:
         raise Refused(f"{folder}: run.h5 has no trajectory")
@@ -181,8 +181,10 @@ def mechanism(folder, geometry, most, box):
     meshes = []
     for mesh in geometry["meshes"]:
         meshes.append(mesh_of(mesh["points"], mesh["polygons"], body=mesh["body"], unbounded=mesh["unbounded"]))
+        points = np.asarray(mesh["points"]).reshape(-1, 3)
+        if mesh["body"] < 0:
+            ground.add(points)
         if not mesh["unbounded"]:
-            points = np.asarray(mesh["points"]).reshape(-1, 3)
             add(mesh["body"], points[even(len(points), 200)])
     for joint in geometry["joints"]:
         add(joint["body"], joint["point"])
@@ -241,7 +243,7 @@ def grains(files, most, box):
             "largest_radius": largest_radius, "largest_value": largest_speed}, len(files), count
 
 
-def boundaries(files, most, box):
+def boundaries(files, most, ground):
     files = [files[k] for k in even(len(files), most)]
     meshes, known, mesh_of_frame = [], {}, []
     for _, path in files:
@@ -253,6 +255,7 @@ def boundaries(files, most, box):
         key = (points.tobytes(), connectivity.tobytes())
         if key not in known:
             known[key] = len(meshes)
+            ground.add(points)
             polygons = np.split(connectivity, offsets[:-1]) if len(offsets) else []
             meshes.append(mesh_of(points, [polygon.tolist() for polygon in polygons]))
         mesh_of_frame.append(known[key])
@@ -275,12 +278,23 @@ def up_of(folder):
     return [0.0, 0.0, 1.0]
 
 
+def floor_of(box, ground, up):
+    """The height of the floor grid: below the motion. It is at the lowest surface of the ground, if there is one below the
+    motion, and not so near that they are drawn at the same depth."""
+    lowest = lambda of: float(min(np.dot(of.low, up), np.dot(of.high, up)))  # noqa: E731
+    size = float(np.linalg.norm(box.high - box.low))
+    at = lowest(box)
+    if np.isfinite(ground.low).all() and at - size < lowest(ground) < at + 0.01 * size:
+        return min(at, lowest(ground)) - 0.002 * size
+    return at - 0.05 * size
+
+
 def scene(folder, geometry, most):
     """The data of the page"""
-    box, tables, curves, parts, spans = Box(), [], [], {}, []
+    box, ground, tables, curves, parts, spans = Box(), Box(), [], [], {}, []
     text = ""
     if geometry is not None:
-        parts["mechanism"], tables, t = mechanism(folder, geometry, most, box)
+        parts["mechanism"], tables, t = mechanism(folder, geometry, most, box, ground)
         spans += [t[0], t[-1]]
         bodies = parts["mechanism"]["bodies"]
         curves = ["energy", parts["mechanism"].pop("largest_motion")]
@@ -292,7 +306,7 @@ def scene(folder, geometry, most):
         spans += [frames["particles"][0][0], frames["particles"][-1][0]]
         text += (", " if text else "") + f"{particles} particles, {count} of {len(frames['particles'])} frames"
     if "boundaries" in frames:
-        parts["boundaries"] = boundaries(frames["boundaries"], most, box)
+        parts["boundaries"] = boundaries(frames["boundaries"], most, ground)
     run = read_table(grains_in, "run") if os.path.isfile(os.path.join(grains_in, "run.csv")) else None
     if run is not None:
         tables.append(columns_of(run, even(len(run.rows), most), COLUMN_BYTES / 2))
@@ -307,8 +321,10 @@ def scene(folder, geometry, most):
     if np.linalg.norm(box.high - box.low) == 0:
         box.add(box.low - 0.5), box.add(box.high + 0.5)
     known = {column["name"] for table in tables for column in table["columns"]}
+    up = up_of(folder)
     return {"title": os.path.basename(os.path.abspath(folder)), "text": text, "times": [float(min(spans)), float(max(spans))],
-            "low": box.low.tolist(), "high": box.high.tolist(), "up": up_of(folder), "tables": tables,
+            "low": box.low.tolist(), "high": box.high.tolist(), "up": up, "floor": floor_of(box, ground, up),
+            "tables": tables,
             "curves": [name for name in curves if name in known], **parts}
 
 
@@ -327,7 +343,8 @@ def page(data):
     import html
     values = {"TITLE": html.escape(data["title"]), "THREE": read_text(LIBRARY, "three.min.js"),
               "CONTROLS": read_text(LIBRARY, "examples", "js", "controls", "OrbitControls.js"),
-              "SCENE": read_text(HERE, "scene.js"), "PLOTS": read_text(HERE, "plots.js"), "MAIN": read_text(HERE, "main.js"),
+              "SCENE": read_text(HERE, "scene.js"), "REFERENCES": read_text(HERE, "references.js"),
+              "PLOTS": read_text(HERE, "plots.js"), "MAIN": read_text(HERE, "main.js"),
               # "<" could end the element of the page, or begin another one
               "DATA": json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")}
     return re.sub("@([A-Z]+)@", lambda match: values[match.group(1)], read_text(HERE, "page.html"))

@@ -191,6 +191,16 @@ class Pages(unittest.TestCase):
         self.assertEqual(data["mechanism"]["bodies"], ["ball"])
         self.assertIn("grains", data)
 
+    def test_floor_is_below_the_motion(self):
+        for folder in (self.pendulum, self.bowl, self.grains):
+            data, _ = data_of(os.path.join(folder, "view.html"))
+            low, high, up = (np.array(data[name]) for name in ("low", "high", "up"))
+            size = np.linalg.norm(high - low)
+            below = min(low @ up, high @ up) - data["floor"]
+            self.assertGreater(below, 0.001 * size)  # another depth than that of a surface at the lowest point
+            if folder == self.pendulum:
+                self.assertLess(below, 0.1 * size)
+
     def test_refusals(self):
         def refused(expected, *words, code=3):
             text = hilda("view", *words, expected=code)
@@ -340,6 +350,7 @@ class Pages(unittest.TestCase):
             browser.run("viewer.set_time(0); viewer.play(true)")
             browser.wait("viewer.t > 0.001 && viewer.frames > 3")
 
+            self.check_references(browser)
             opened(self.bowl)
             self.assertFalse(browser.run("return document.getElementById('forces').hidden"))
 
@@ -352,6 +363,49 @@ class Pages(unittest.TestCase):
             at = browser.run("return viewer.project(...arguments)", *(rows[c][top] for c in ("x", "y", "z")))
             self.assertEqual(browser.run("return viewer.pick(...arguments)", *at), f"particle {int(rows['id'][top])}")
             self.assertEqual([m for m in browser.messages() if "SEVERE" in m or "Uncaught" in m], [])
+
+    def check_references(self, browser):
+        """Grid, triad and scale bar of the page that is open: their lengths, and that they follow the camera and the check box"""
+        def text(name):
+            return browser.run("return document.getElementById(arguments[0]).textContent", name)
+
+        def redrawn(script):
+            frames = browser.run("return viewer.frames")
+            browser.run(script)
+            browser.wait(f"viewer.frames > {frames}")
+        spacing = browser.run("return viewer.grid.spacing")
+        self.assertIn(round(spacing / 10 ** np.floor(np.log10(spacing) + 1e-9), 9), (1, 2, 5))
+        self.assertEqual(text("grid"), f"grid {spacing:g} m")
+        x, y, z = np.array(browser.run("return Array.from(viewer.grid.object.geometry.attributes.position.array)")).reshape(-1, 3).T
+        floor = browser.run("return JSON.parse(document.getElementById('data').textContent).floor")
+        np.testing.assert_allclose(z, floor, rtol=1e-6)
+        np.testing.assert_allclose(np.concatenate([x, y]) / spacing, np.round(np.concatenate([x, y]) / spacing), atol=1e-4)
+
+        for side, towards in (("+x", "x"), ("-y", "y"), ("top", "z")):
+            redrawn(f"const side = document.getElementById('side_of'); side.value = '{side}'; side.onchange({{target: side}})")
+            # The length of the bar is that of a length across the view at its centre.
+            metres, pixels, c, r = browser.run(
+                "const { camera, controls } = viewer, m = viewer.scale_bar.metres;"
+                "return [m, document.querySelector('#scale i').getBoundingClientRect().width, controls.target.toArray(),"
+                "        camera.matrixWorld.elements.slice(0, 3)]")
+            ends = [browser.run("return viewer.project(...arguments)", *(np.array(c) + s * metres * np.array(r))) for s in (0, 1)]
+            self.assertAlmostEqual(np.hypot(*np.subtract(*ends)), pixels, delta=0.5)
+            self.assertTrue(60 < pixels < 140, pixels)
+            shown = text("scale").removesuffix(text("grid")).split()
+            self.assertAlmostEqual(float(shown[0]) * {"m": 1, "mm": 1e-3, "km": 1e3}[shown[1]], metres, delta=1e-9 * metres)
+            # The axis towards the viewer has the shortest line, and its group is the last one.
+            axes = browser.run("return Array.from(document.querySelectorAll('#triad g'), g => [g.textContent,"
+                               "  Math.hypot(g.firstChild.x2.baseVal.value, g.firstChild.y2.baseVal.value)])")
+            self.assertEqual(min(axes, key=lambda axis: axis[1])[0], towards)
+            self.assertEqual(sorted(name for name, _ in axes), ["x", "y", "z"])
+
+        for shown in (False, True):
+            redrawn("document.dispatchEvent(new KeyboardEvent('keydown', { key: 'g' }))")
+            self.assertEqual(browser.run("return document.getElementById('references').checked"), shown)
+            self.assertEqual(browser.run("return viewer.grid.object.visible"), shown)
+            for name in ("triad", "scale"):
+                visible = browser.run("return document.getElementById(arguments[0]).getBoundingClientRect().width > 0", name)
+                self.assertEqual(visible, shown)
 
 
 if __name__ == "__main__":

@@ -42,6 +42,10 @@ function start(data) {
   if (grains) grains.uniforms.up.value.copy(up);
   if (data.boundaries) parts.push(new Boundaries(data.boundaries));
   for (const part of parts) scene.add(part.object);
+  const grid = new FloorGrid(low, high, up, data.floor), triad = new Triad(element('triad')), scale_bar = new ScaleBar(element('scale'));
+  scene.add(grid.object);
+  element('grid').textContent = `grid ${length_text(grid.spacing)}`;
+  Object.assign(viewer, { camera, controls, grid, scale_bar });
 
   // The plane in which the smallest extent is normal to the view; else a view from above at an angle
   function look(from) {
@@ -216,9 +220,17 @@ function start(data) {
   element('side_of').onchange = event => look(event.target.value);
   element('forces').hidden = !(mechanism && mechanism.arrows.length);
   element('arrows').onchange = () => { changed = true; };
+  function show_references() {
+    const on = element('references').checked;
+    grid.object.visible = on;
+    element('triad').style.display = element('scale').style.display = on ? '' : 'none';
+    changed = true;
+  }
+  element('references').onchange = event => { show_references(); event.target.blur(); };
   document.addEventListener('keydown', event => {
     if (['INPUT', 'SELECT', 'BUTTON'].includes(event.target.tagName)) return;
-    if (event.key === ' ') viewer.play(!viewer.playing);
+    if (event.key === 'g') element('references').click();
+    else if (event.key === ' ') viewer.play(!viewer.playing);
     else if (event.key === 'ArrowRight') set_time(viewer.t + (last - first) / 200);
     else if (event.key === 'ArrowLeft') set_time(viewer.t - (last - first) / 200);
     else return;
@@ -252,7 +264,9 @@ function start(data) {
       controls.update();
       set_time(saved.at_end ? last : saved.t);
       element('colour').value = saved.colour;
+      element('references').checked = saved.references !== false;
       show_legend();
+      show_references();
     }
     const timer = setInterval(async () => {
       let stamp;
@@ -264,7 +278,8 @@ function start(data) {
       }
       if (stamp === data.live || viewer.playing) return;
       sessionStorage.setItem('hilda', JSON.stringify({ t: viewer.t, at_end: viewer.t >= last, position: camera.position.toArray(),
-                                                       target: controls.target.toArray(), colour: element('colour').value }));
+                                                       target: controls.target.toArray(), colour: element('colour').value,
+                                                       references: element('references').checked }));
       location.reload();
     }, 1000);
   }
@@ -285,6 +300,8 @@ function start(data) {
     light.target.position.copy(centre);
     light.target.updateMatrixWorld();
     renderer.render(scene, camera);
+    triad.draw(camera);
+    scale_bar.draw(camera, controls.target, space.clientHeight);
     for (const plot of plots) if (!plot.removed) plot.draw(viewer.t);
     show_selection();
     ++viewer.frames;

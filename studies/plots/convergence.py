@@ -9,8 +9,9 @@ for each problem: DIR/convergence-position.png and DIR/convergence-loads.png. --
 of another quantity. For any other selection it writes one figure for each problem, DIR/convergence-PROBLEM.png, with one
 panel for each error norm.
 """
-from drawing import (OF_THE_TEXT, Line2D, axis, chosen, declared_order, directory, distinct, guides, legend, lines_below,
-                     numbers, plt, read, record, save, shown, style, where)
+from drawing import (OF_THE_TEXT, Line2D, axis, chosen, declared_order, directory, distinct, legend, lines_below, numbers, plt,
+                     read, record, save, shown, style, where)
+from slopes import guides
 
 PANELS = [
     [("r", "position $r$ [m]"), ("A", "orientation $\\|A\\|_F$"), ("v", "velocity $\\dot r$ [m/s]"),

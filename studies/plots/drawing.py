@@ -14,6 +14,7 @@ from matplotlib.collections import PatchCollection
 from matplotlib.lines import Line2D
 
 import options
+import slopes
 import ticks
 from options import OF_THE_TEXT, PREFERRED, chosen, directory, shown
 
@@ -229,28 +230,6 @@ def times_and_ratios(time, ratio, rows, x, **points):
     ratio.plot(values, numbers(rows, "ratio_to_full"), "-", lw=1.2, **points)
 
 
-def guide(axes, slope, points, above=False, size=8):
-    """A straight line of this slope above or below the points (h, error), with its slope written on it"""
-    h = [min(x for x, _ in points), max(x for x, _ in points)]
-    ratios = [e / x ** slope for x, e in points]
-    factor = 2 * max(ratios) if above else min(ratios) / 2
-    axes.plot(h, [factor * x ** slope for x in h], "--", color="0.5", lw=0.9, zorder=1)
-    middle = (h[0] * h[1]) ** 0.5
-    axes.annotate(f"slope {slope}", (middle, factor * middle ** slope), xytext=(0, 4 if above else -4),
-                  textcoords="offset points", ha="right" if above else "left", va="bottom" if above else "top",
-                  fontsize=size, color="0.35")
-
-
-def guides(axes, by_order, size=8):
-    """A guide for each order: above the points of the lowest order, below those of the others. An order with less than two
-    steps has none."""
-    by_order = {order: points for order, points in sorted(by_order.items()) if len({h for h, _ in points}) > 1}
-    if by_order:
-        axes.margins(y=0.12)  # room for the text above the uppermost line
-    for order, points in by_order.items():
-        guide(axes, order, points, above=order == min(by_order), size=size)
-
-
 def declared_order(folder, scheme, key="declared_order"):
     """The declared order of a scheme in study.json; None if it has none"""
     for series in record(folder).get("series") or []:
@@ -282,6 +261,7 @@ def save(figure, folder, name, below=0.0, top=0.97):
         wide = int(110 * figure.get_figwidth() / figure._suptitle.get_fontsize())
         figure._suptitle.set_text("\n".join(part for line in lines for part in textwrap.wrap(line, wide)))
     tidy_and_lay_out(figure, (0, below, 1, top))
+    slopes.place_labels(figure)
     for kind in options.formats():
         file = f"{os.path.splitext(name)[0]}.{kind}"
         figure.savefig(os.path.join(folder, file), dpi=RESOLUTION, metadata=UNDATED.get(kind))

@@ -6,7 +6,8 @@
 """
 import math
 
-from drawing import (Line2D, axis, by_scheme, chosen, distinct, for_each, guides, legend, number, numbers, plt, save)
+from drawing import Line2D, axis, by_scheme, chosen, distinct, for_each, legend, number, numbers, plt, save
+from slopes import guides
 
 PANELS = {"r": "position $r$ [m]", "A": "orientation $\\|A\\|_F$", "alpha": r"contact points $\bar\alpha$ [m]",
           "F_N": "normal force $F_N$ [N]"}

@@ -23,6 +23,7 @@ try:
     matplotlib.use("Agg")
     import drawing
     import options
+    import slopes
     import ticks
 except ModuleNotFoundError as missing:
     print(f"not tested: {missing}")
@@ -155,18 +156,34 @@ class Figures(unittest.TestCase):
 
     def test_slope_guides_are_those_of_the_orders_in_the_figure(self):
         convergence_table(self.folder, [4e-3, 2e-3, 1e-3])
-        for names, slopes in (("rA-half-1,rA-half-2", {1, 2}), ("rA-rkmk-4", {4}), ("rA-half-1,rA-rkmk-4", {1, 4})):
+        for names, orders in (("rA-half-1,rA-half-2", {1, 2}), ("rA-rkmk-4", {4}), ("rA-half-1,rA-rkmk-4", {1, 4})):
             figures, _ = draw("convergence.py", self.folder, "--integrator", names, "--quantity", "r,Q")
             for axes in figures["convergence-p.png"].axes:
                 texts = {text.get_text() for text in axes.texts}
-                self.assertEqual(texts, {f"slope {k}" for k in slopes}, names)
+                self.assertEqual(texts, {f"slope {k}" for k in orders}, names)
                 # the guide has the slope that is written on it
                 for line in axes.lines:
                     if line.get_color() == "0.5":
                         (x, y), (log_x, log_y) = line.get_data(), ([], [])
                         log_x, log_y = [math.log(v) for v in x], [math.log(v) for v in y]
                         slope = (log_y[-1] - log_y[0]) / (log_x[-1] - log_x[0])
-                        self.assertAlmostEqual(min(abs(slope - k) for k in slopes), 0, 9)
+                        self.assertAlmostEqual(min(abs(slope - k) for k in orders), 0, 9)
+
+    def test_labels_of_slopes_overlap_neither_curves_nor_each_other(self):
+        convergence_table(self.folder, [4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4])
+        for names in ("rA-half-1,rA-half-2,rA-rkmk-4", "rA-full-1,rA-half-1,rA-genalpha,rA-rattle,rA-half-2,rA-rkmk-4"):
+            figures, _ = draw("convergence.py", self.folder, "--integrator", names)
+            figure = figures["convergence-p.png"]
+            for axes in figure.axes:
+                self.assertEqual(len(axes.texts), 3)
+                boxes = [text.get_window_extent() for text in axes.texts]
+                for k, box in enumerate(boxes):
+                    self.assertFalse(any(box.overlaps(other) for other in boxes[k + 1:]))
+                    self.assertTrue(axes.get_window_extent().containsx(box.x0) and axes.get_window_extent().containsx(box.x1))
+                    self.assertTrue(axes.get_window_extent().containsy(box.y0) and axes.get_window_extent().containsy(box.y1))
+                    for line in axes.lines:
+                        for x, y, half in slopes.on_curve(axes, line):
+                            self.assertFalse(box.x0 - half < x < box.x1 + half and box.y0 - half < y < box.y1 + half)
 
     def test_points_at_rounding_are_hollow_and_the_others_are_not(self):
         convergence_table(self.folder, [4e-3, 2e-3, 1e-3, 5e-4, 2e-4])

@@ -160,7 +160,7 @@ def snapshots(folder, name):
         fastest = max(math.hypot(*motion.v[motion.at(t)]) for t in times)
         strongest = max((math.hypot(*contact.F[k]) for k in touching.values() if k is not None), default=0)
         moves, has_friction = fastest > 1e-6, strongest > 1e-6
-        figure, axes = bodies.panels(len(times), columns, 3.1, 3.5 if slope else 2.9)
+        figure, axes = bodies.panels(len(times), columns, 3.1, 4.0 if slope else 2.9)
         for ax, t, text in zip(axes, times, texts):
             scene = bodies.Scene(ax, run, t, low, high, look, 1.05 if slope else 1.2)
             scene.surroundings()

@@ -28,7 +28,7 @@ def draw(folder):
             if law == laws[0]:
                 axis.set_title(rf"$\mu = {number(mu):g}$", fontsize=11)
             if law == laws[-1]:
-                axis.set_xlabel("position on the floor [diameters]")
+                axis.set_xlabel("position [diameters]")
             grid(axis)
         of_law[0].set_ylabel(NAMES[law] + "\n\n" r"$\Delta F/F_{\mathrm{ext}}$")
         last = of_law[-1]
@@ -41,7 +41,7 @@ def draw(folder):
         last.minorticks_off()
         last.set_ylim(-0.045, 0.085)
         if law == laws[0]:
-            last.legend(frameon=False, fontsize=9, loc="upper right")
+            last.legend(frameon=False, fontsize=9, loc="best")
             last.set_title("floor force below the load", fontsize=11)
         if law == laws[-1]:
             last.set_xlabel(r"$F_{\mathrm{ext}}/mg$")

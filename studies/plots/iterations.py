@@ -10,6 +10,11 @@ from drawing import along, axis, by_scheme, chosen, distinct, for_each, legend, 
 MOST_STEPS = 3  # number of panels over time
 
 
+def from_zero(axes):
+    """A vertical axis that begins at 0, with room for the markers of the largest value"""
+    axes.set_ylim(0, 1.05 * max((y for line in axes.lines for y in line.get_ydata() if y > 0), default=1))
+
+
 def draw(folder, problem, runs, bins):
     schemes = shown(distinct(runs, "integrator"))
     names = chosen(["mean", "time"])
@@ -30,11 +35,11 @@ def draw(folder, problem, runs, bins):
             along(axes, numbers(part, "t"), numbers(part, "mean"), place, len(schemes), **look)
     if mean:
         axis(mean, "step $h$ [s]", "Newton iterations per step, mean")
-        mean.set_ylim(bottom=0)
+        from_zero(mean)
     for axes, h in zip(over_time, steps):
         intervals = len(distinct(where(bins, h=h), "t"))
         axis(axes, "$t$ [s]", "Newton iterations per step", f"h = {float(h):g} s, means over {intervals} time intervals", 9)
-        axes.set_ylim(bottom=0)
+        from_zero(axes)
     figure.suptitle(f"{problem}: Newton iterations", fontsize=11)
     save(figure, folder, f"iterations-{problem}.png", legend(figure, schemes, columns=5))
 

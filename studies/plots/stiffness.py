@@ -9,7 +9,8 @@ from drawing import axis, by_scheme, directory, distinct, legend, number, plt, r
 
 def draw(folder):
     rows = read(folder, "times.csv")
-    accuracies = sorted(distinct(rows, "accuracy"), key=number, reverse=True)
+    reached = [row for row in rows if row["cpu_seconds_needed"]]
+    accuracies = sorted(distinct(reached or rows, "accuracy"), key=number, reverse=True)
     stiff = max((row["k"] for row in rows if number(row["c"]) > 0), key=number)
     sweeps = [("c = 0", "stiffness k [N/m]", "k", [row for row in rows if number(row["c"]) == 0]),
               (f"k = {number(stiff):.0e} N/m", "damping c [N s/m]", "c", [row for row in rows if row["k"] == stiff])]

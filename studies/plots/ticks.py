@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ticks of logarithmic axes whose labels do not overlap, also below one decade."""
+"""Ticks whose labels do not overlap, on logarithmic axes also below one decade."""
 import math
 
-from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
+from matplotlib.ticker import AutoLocator, FixedLocator, FuncFormatter, MaxNLocator, NullFormatter
 
 HEIGHT = 0.22  # least distance of labels on a vertical axis [inch]
 
@@ -38,8 +38,31 @@ def candidates(low, high):
         yield [x for x in ticks if low <= x * (1 + 1e-9) and x * (1 - 1e-9) <= high]
 
 
+def are_crowded(axis):
+    """Whether the labels of a horizontal axis are nearer to each other than the width of a digit"""
+    low, high = sorted(axis.get_view_interval())
+    labels = axis.get_majorticklabels()  # this updates the ticks
+    labels = [label for label, at in zip(labels, axis.get_majorticklocs()) if low <= at <= high and label.get_visible()]
+    boxes = [label.get_window_extent() for label in labels if label.get_text()]
+    least = 0.6 * axis.axes.figure.dpi / 72 * (labels[0].get_fontsize() if labels else 0)
+    return any(right.x0 - left.x1 < least for left, right in zip(boxes, boxes[1:]))
+
+
+def thin_out(axis):
+    """Fewer ticks on a horizontal linear axis with crowded labels"""
+    if axis.axis_name != "x" or axis.axes.name == "3d" or not isinstance(axis.get_major_locator(), AutoLocator):
+        return
+    for most in (9, 7, 6, 5, 4, 3):
+        if not are_crowded(axis):
+            return
+        axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]))
+
+
 def tidy(axis):
-    """Labels of a logarithmic axis. Axes of two decades or more keep their ticks; the minor ticks have no labels."""
+    """Labels of an axis. Logarithmic axes of two decades or more keep their ticks; the minor ticks have no labels."""
+    if axis.get_scale() == "linear":
+        thin_out(axis)
+        return
     if axis.get_scale() != "log" or axis.get_transform().base != 10:
         return
     axis.set_minor_formatter(NullFormatter())

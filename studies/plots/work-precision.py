@@ -45,6 +45,8 @@ def draw(folder, problem, rows):
     figure.suptitle(f"{problem}, end time {number(rows[0]['end']):g} s: error over CPU time; reference: {rows[0]['reference']}" +
                     (f"\nno panel, at rounding: {', '.join(at_rounding)}" if at_rounding else ""), fontsize=11)
     more = [Line2D([], [], color="0.3", marker="o", mfc="white", ls="", label="at rounding")] if hollow else []
+    if "r" in names:
+        more.append(Line2D([], [], color="0.6", lw=1, ls="--", label="position error of $10^{-3}$ m"))
     save(figure, folder, f"work-precision-{problem}.png",
          legend(figure, shown(distinct(rows, "integrator"), PREFERRED), more=more, columns=5))
 

@@ -185,6 +185,16 @@ class Figures(unittest.TestCase):
                         for x, y, half in slopes.on_curve(axes, line):
                             self.assertFalse(box.x0 - half < x < box.x1 + half and box.y0 - half < y < box.y1 + half)
 
+    def test_a_linear_axis_has_fewer_ticks_where_their_labels_would_be_crowded(self):
+        for width, end in ((1.5, 0.04), (3, 0.04), (3, 1), (6, 123456)):
+            figure, axes = plt.subplots(figsize=(width, 2))
+            axes.plot([0, end], [0, 1])
+            ticks.tidy(axes.xaxis)
+            self.assertFalse(ticks.are_crowded(axes.xaxis), (width, end))
+            low, high = axes.get_xlim()
+            self.assertGreater(sum(low <= x <= high for x in axes.get_xticks()), 1)
+            plt.close(figure)
+
     def test_points_at_rounding_are_hollow_and_the_others_are_not(self):
         convergence_table(self.folder, [4e-3, 2e-3, 1e-3, 5e-4, 2e-4])
         figures, _ = draw("convergence.py", self.folder, "--integrator", "rA-rkmk-4,rA-half-2", "--quantity",

@@ -54,11 +54,12 @@ std::string folder_of(const std::string& file)
     return path.parent_path().string();
 }
 
-/// The built-in case that a word names: a file of this name has precedence. Throws io::UsageError if the name
+/// The built-in case that a word names; nullptr if there is none. A file of this name is given with its folder, as
+/// ./bed: the files in the working directory do not change the meaning of a word. Throws io::UsageError if the name
 /// is that of a validation as well.
 const BuiltInCase* built_in_case(const std::string& word)
 {
-    const BuiltInCase* const found = is_file(word) ? nullptr : find_built_in_case(word);
+    const BuiltInCase* const found = find_built_in_case(word);
     if (found != nullptr && find_validation(word) != nullptr)
         throw io::UsageError("granular: '" + word +
                              "' is the name of a validation and of a built-in case; write the case to a file "
@@ -172,10 +173,8 @@ int run_program(int argc, char** argv, Processes* processes)
     omp_set_num_threads(o.threads);
     built_in_case(o.run.file);
     const Validation* const validation = find_validation(o.run.file);
-    const bool exports = o.run.file == "export" && !is_file(o.run.file);
-    const bool command =
-        exports ||
-        ((o.run.file == "schema" || o.run.file == "laws" || o.run.file == "cases") && !is_file(o.run.file));
+    const bool exports = o.run.file == "export",
+               command = exports || o.run.file == "schema" || o.run.file == "laws" || o.run.file == "cases";
     if ((validation != nullptr || command) && !o.case_only_option.empty())
         throw io::UsageError("granular: " + o.case_only_option + ": is valid for cases only, but " +
                              o.run.file + (command ? " is a command" : " is a validation"));

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
 namespace hilda::granular {
 
@@ -51,9 +50,6 @@ void print(const ValidationTable& table)
 
 const Validation* find_validation(const std::string& name)
 {
-    std::error_code error;
-    // a case file with this name has precedence
-    if (std::filesystem::is_regular_file(name, error)) return nullptr;
     return io::Registry<Validation>::find(name);
 }
 

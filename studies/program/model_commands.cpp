@@ -158,8 +158,6 @@ void add_check_options(CLI::App& c, CheckOptions& o)
           assign(o.write, io::path));
     c.add_flag("--json", o.json, "print the result as JSON");
     c.add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
-    c.add_flag_callback(
-        "-v,--verbose", [] {}, "no effect");
 }
 
 void add_import_options(CLI::App& c, ImportOptions& to)

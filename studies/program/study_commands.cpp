@@ -111,8 +111,6 @@ void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
     c.add_flag("--latex", o.latex,
                "write study.tex as well: the tables of the text for LaTeX, with the package booktabs");
     c.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
-    c.add_flag_callback(
-        "-v,--verbose", [] {}, "no effect");
     c.add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
 }
 

@@ -49,10 +49,20 @@ def run_by_name(runs, names):
         expect(ended.returncode == 0, f"{name}: {ended.stderr}")
         ended = runs.run(f"all/{name}.json", *options, "--output", f"file/{name}")
         expect(ended.returncode == 0 and runs.sha(f"out/{name}") == runs.sha(f"file/{name}"), f"{name}: {ended.stderr}")
-    # a file in the working directory has precedence
+    # Files and folders in the working directory do not change the meaning of a word.
+    for word in ("schema", "laws", "cases", "bed"):
+        (runs.folder / word).mkdir()
+    for word in ("schema", "laws", "cases"):
+        ended = runs.run(word)
+        expect(ended.returncode == 0 and ended.stdout, f"{word} beside a folder {word}: {ended.stderr}")
+    ended = runs.run("bed", *options)
+    expect(ended.returncode == 2 and "out/bed" in ended.stderr, f"bed beside a folder bed: {ended.stderr}")
+    for word in ("schema", "laws", "cases", "bed"):
+        (runs.folder / word).rmdir()
+    # A file with such a name is given with its folder.
     (runs.folder / "bed").write_text("{}")
-    ended = runs.run("bed", "--output", "none")
-    expect(ended.returncode == 3 and ended.stderr.startswith("hilda: error: bed:1:1 (/): "), f"{ended.stderr}")
+    ended = runs.run("./bed", "--output", "none")
+    expect(ended.returncode == 3 and ended.stderr.startswith("hilda: error: ./bed:1:1 (/): "), f"{ended.stderr}")
     (runs.folder / "bed").unlink()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Debian packages, by cmake --build FOLDER --target package: hilda (programs), libhilda0.1, libhilda-dev, python3-hilda, hilda-doc.
+# Debian packages, by cmake --build FOLDER --target package: hilda (programs), libhildaX.Y, libhilda-dev, python3-hilda, hilda-doc.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hilda)
 set(CPACK_PACKAGE_VENDOR "HILDA")

@@ -47,7 +47,7 @@ do("pass the test" "${python}" "${source}/law_test.py" "${work}/prefix/bin/hilda
 # What is refused when the project is configured, each with one line
 function(refused laws reason)
     file(WRITE "${work}/refused/CMakeLists.txt" "cmake_minimum_required(VERSION 3.25)\nproject(refused LANGUAGES CXX)\n"
-        "find_package(hilda 0.1 CONFIG REQUIRED COMPONENTS granular_program)\n"
+        "find_package(hilda 0.2 CONFIG REQUIRED COMPONENTS granular_program)\n"
         "hilda_add_granular_program(refused ${laws})\n")
     execute_process(COMMAND ${CMAKE_COMMAND} -S "${work}/refused" -B "${work}/refused/build" ${settings} -DHILDA_CUDA=OFF
         RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)

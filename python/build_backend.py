@@ -95,7 +95,8 @@ def wheel_information(project):
     """The folder .dist-info of the wheel, and the texts of its files by path."""
     info = f"hilda-{project['version']}.dist-info"
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {project['version']}",
-             f"Summary: {project['description']}", f"License: {project['license']['text']}", f"Requires-Python: {project['requires-python']}",
+             f"Summary: {project['description']}", f"Author: {', '.join(author['name'] for author in project['authors'])}",
+             f"License: {project['license']['text']}", f"Requires-Python: {project['requires-python']}",
              *(f"Requires-Dist: {package}" for package in project["dependencies"])]
     texts = {f"{info}/METADATA": "\n".join(lines) + "\n\n" + (ROOT / "README.md").read_text(),
              f"{info}/WHEEL": f"Wheel-Version: 1.0\nGenerator: hilda\nRoot-Is-Purelib: false\nTag: {wheel_tag()}\n",

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Row 4: runs that are killed at random times and resumed write the same tables as an uninterrupted run.
 
-5 models x 7 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (140
-kills); 20 for a release (700 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the
+5 models x 8 integrators. Each run is killed by SIGKILL until it has been killed --kills times, by default 4 (160
+kills); 20 for a release (800 kills). A case is one kill: afterwards there is a complete checkpoint or none, and the
 final tables are equal.
 """
 import random

@@ -172,7 +172,7 @@ void add_reproduce_options(CLI::App& c, ReproduceOptions& o)
                    chapters.push_back(io::count_up_to(99, option, part));
                return chapters;
            }));
-    c.add_flag("--quick", o.quick, "reduced grids, about 10 minutes of CPU time (the default)");
+    c.add_flag("--quick", o.quick, "reduced grids, about half an hour of CPU time (the default)");
     c.add_flag("--full", o.full, "the grids of the dissertation, hours");
     add_output(c, "--force or --resume", "out/reproduce", o.output);
     c.add_flag("--resume", o.resume, "continue in the output directory; finished studies are not run again");

@@ -5,12 +5,13 @@
 set(granular_loop_files core/cpu_loops.cpp core/contact_loop_cpu.cpp core/sweep_cpu.cpp core/add_contacts.cpp
     core/surfaces/triangle_contacts.cpp)
 
-# granular_can_dispatch(<variable>): whether the build can have them. Needs GNU binutils and GCC. A build for one processor and a
-# build with sanitizers have the units once.
+# granular_can_dispatch(<variable>): whether the build can have them. Needs GNU binutils and GCC. A build for one processor, a
+# build with sanitizers and one for clang-tidy have the units once.
 function(granular_can_dispatch variable)
     set(can OFF)
     if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"
-            AND CMAKE_OBJCOPY AND CMAKE_LINKER AND NOT HILDA_NATIVE AND NOT HILDA_SANITIZE AND NOT CMAKE_CXX_FLAGS MATCHES "-march=")
+            AND CMAKE_OBJCOPY AND CMAKE_LINKER AND NOT HILDA_NATIVE AND NOT HILDA_SANITIZE
+            AND NOT CMAKE_CXX_CLANG_TIDY AND NOT CMAKE_CXX_FLAGS MATCHES "-march=")
         set(can ON)
     endif()
     set(${variable} ${can} PARENT_SCOPE)

@@ -23,6 +23,21 @@ namespace {
 
 std::atomic<const InstructionSet*> chosen = nullptr;
 
+bool always() { return true; }
+#ifdef HILDA_LOOPS_X86_64
+bool has_v3()
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2");
+}
+bool has_v4()
+{
+    return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
+#endif
+
 std::string list(bool only_available)
 {
     std::string names;
@@ -57,14 +72,11 @@ const InstructionSet& default_set()
 
 const std::vector<InstructionSet>& instruction_sets()
 {
-    static const auto always = [] { return true; };
 #ifdef HILDA_LOOPS_X86_64
     static const std::vector<InstructionSet> sets = {
         {"sse2", "x86-64, vectors of 128 bits", hilda_granular_loops_base, always},
-        {"v3", "x86-64-v3, AVX2", hilda_granular_loops_v3,
-         [] { return __builtin_cpu_supports("x86-64-v3") != 0; }},
-        {"v4", "x86-64-v4, AVX-512", hilda_granular_loops_v4,
-         [] { return __builtin_cpu_supports("x86-64-v4") != 0; }}};
+        {"v3", "x86-64-v3, AVX2", hilda_granular_loops_v3, has_v3},
+        {"v4", "x86-64-v4, AVX-512", hilda_granular_loops_v4, has_v4}};
 #else
     static const std::vector<InstructionSet> sets = {
         {"native", "the flags of this build", hilda_granular_loops_base, always}};

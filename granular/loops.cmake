@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The loops of the CPU for several instruction sets of x86-64: core/cpu_loops.hpp, backend/instruction_set.hpp.
+# The loops of the CPU for several instruction sets of x86-64: backend/cpu_loops.hpp, backend/instruction_set.hpp.
 
 # The units that determine the time of a step
-set(granular_loop_files core/cpu_loops.cpp core/contact_loop_cpu.cpp core/sweep_cpu.cpp core/add_contacts.cpp
+set(granular_loop_files backend/cpu_loops.cpp core/contact_loop_cpu.cpp core/sweep_cpu.cpp core/add_contacts.cpp
     core/surfaces/triangle_contacts.cpp)
 
 # granular_can_dispatch(<variable>): whether the build can have them. Needs GNU binutils and GCC. A build for one processor, a
@@ -38,7 +38,7 @@ function(granular_compile_loops name root variable)
         target_compile_definitions(${target} PRIVATE HILDA_LOOPS=${set})
         # Without the warnings that the intrinsics of AVX-512 cause (GCC bug 105593)
         target_compile_options(${target} PRIVATE
-            ${arg_FLAGS} -march=x86-64-${set} ${move_${set}} -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized)
+            ${arg_FLAGS} -march=x86-64-${set} ${move_${set}} -fno-gnu-unique -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized)
         target_link_libraries(${target} PRIVATE granular_thrust_target OpenMP::OpenMP_CXX)
         set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD OFF)
         set(object "${CMAKE_CURRENT_BINARY_DIR}/${target}.o")

@@ -2,12 +2,12 @@
 // Implementation of Engine for any back end.
 #pragma once
 
+#include "granular/backend/cpu_loops.hpp"
 #include "granular/backend/engine.hpp"
 #include "granular/backend/instruction_set.hpp"
 #include "granular/backend/pair_lists.hpp"
 #include "granular/backend/transfer.hpp"
 #include "granular/backend/watch_arrays.hpp"
-#include "granular/core/cpu_loops.hpp"
 #include "granular/core/surfaces/hand_over.hpp"
 #include "granular/core/surfaces/triangle_contacts.hpp"
 #include "granular/core/sweep.hpp"

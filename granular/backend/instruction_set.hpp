@@ -21,12 +21,14 @@ struct InstructionSet {
 /// All instruction sets of this build, the widest one last
 const std::vector<InstructionSet>& instruction_sets();
 
-/// The instruction set in use: the one of the last choose_instruction_set(), otherwise the one that the environment variable
-/// HILDA_ISA names, otherwise the widest one that the processor has. Throws as choose_instruction_set().
+/// The instruction set in use: the one of the last choose_instruction_set(), otherwise the one that the
+/// environment variable HILDA_ISA names, otherwise the widest one that the processor has. Throws as
+/// choose_instruction_set().
 const InstructionSet& instruction_set();
 
-/// Uses the instruction set `name` from now on. `origin`: of the name, for messages. Throws io::UsageError if the build does not
-/// have it, and io::NotAvailable if the processor does not; the messages list what there is.
+/// Uses the instruction set `name` from now on. `origin`: of the name, for messages. Throws io::UsageError if
+/// the build does not have it, and io::NotAvailable if the processor does not; the messages list what there
+/// is.
 void choose_instruction_set(const std::string& name, const std::string& origin = "--isa");
 
 /// The loops of instruction_set()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Packs of floats and integers, and the functions on them that each set of vector instructions has of its own:
+/// Packs of floats and integers, and the functions on them that each set of vector instructions has of its
+/// own:
 ///
 ///     sqrt(a), rint(a)       as those of real.hpp
 ///     bits(m)                bit k of the result: lane k of the mask

@@ -3,10 +3,10 @@
 
 #pragma once
 
+#include "granular/backend/cpu_loops.hpp"
 #include "granular/backend/instruction_set.hpp"
 #include "granular/backend/pair_lists.hpp"
 #include "granular/backend/transfer.hpp"
-#include "granular/core/cpu_loops.hpp"
 
 #include <utility>
 

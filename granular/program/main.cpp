@@ -54,9 +54,9 @@ std::string folder_of(const std::string& file)
     return path.parent_path().string();
 }
 
-/// The built-in case that a word names; nullptr if there is none. A file of this name is given with its folder, as
-/// ./bed: the files in the working directory do not change the meaning of a word. Throws io::UsageError if the name
-/// is that of a validation as well.
+/// The built-in case that a word names; nullptr if there is none. A file of this name is given with its
+/// folder, as ./bed: the files in the working directory do not change the meaning of a word. Throws
+/// io::UsageError if the name is that of a validation as well.
 const BuiltInCase* built_in_case(const std::string& word)
 {
     const BuiltInCase* const found = find_built_in_case(word);

@@ -85,7 +85,7 @@ struct CompressTable {
                 if ((b >> k & 1) != 0) lane[b][n++] = k;
     }
 };
-inline constexpr CompressTable compress_table;
+constexpr CompressTable compress_table;  // not inline: each set of instructions has its own
 inline __m256i lanes_of(unsigned bits)
 {
     return _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_table.lane[bits]));

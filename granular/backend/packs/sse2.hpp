@@ -27,7 +27,8 @@ public:
     Squares() = default;
     Squares(Ints x, Ints y, Ints z, Ints D)
     {
-        // The multiplication is one of unsigned numbers, and reads the even lanes; the odd ones are shifted into them.
+        // The multiplication is one of unsigned numbers. It reads the even lanes; the odd ones are shifted
+        // into them.
         const auto squares = [](const auto& of, __m128i& d2, __m128i& q) {
             const auto square = [](__m128i a) { return _mm_mul_epu32(a, a); };
             d2 = _mm_add_epi64(_mm_add_epi64(square(of[0]), square(of[1])), square(of[2]));

@@ -86,7 +86,7 @@ TEST_CASE("the program lists models, integrators, studies and versions", "[studi
     };
     lists({"--version"}, "hilda 0.");
     lists({"--version"}, "build: ");
-    lists({"--version"}, "modules: HDF5");
+    lists({"--version"}, "modules: grains, HDF5");
     lists({"--help"}, "integrators");
     lists({"help"}, "integrators");
     for (const char* command : {"run", "check", "models", "integrators", "study", "plot", "info"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of the loops for the instruction set of this compilation, and the neighbour search on the CPU.
-#include "granular/core/cpu_loops.hpp"
+#include "granular/backend/cpu_loops.hpp"
 
 #include "granular/core/neighbours/neighbours_impl.hpp"
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The loops over particles and pairs on the CPU that determine the time of a step, for one instruction set.
+/// The loops over particles and pairs on the CPU that determine the time of a step, for one set of vector
+/// instructions.
 ///
-/// The units in granular_loop_files (loops.cmake) are compiled once for each instruction set. Every copy gives
-/// the same bits: packs are computed elementwise, the order of sums does not depend on the number of lanes, and
-/// no multiplication is fused with an addition.
+/// The units in granular_loop_files (loops.cmake) are compiled once for each set. Every copy gives the same
+/// bits: packs are computed elementwise, the order of sums does not depend on the number of lanes, and no
+/// multiplication is fused with an addition.
 
 #pragma once
 

@@ -28,8 +28,9 @@ const GrainFunctions& grains(const std::string& what)
     if (found == nullptr)
         throw io::NotAvailable(
             what +
-            ": needs the module hilda-grains.so, which was not built; build it (cmake --build "
-            "build/release --target hilda_grains), or install the Debian package hilda");
+            ": needs the module hilda-grains.so, which was not built; "
+            "'./studies/run granular laws' in the source tree builds it (target hilda_grains), "
+            "and the Debian package hilda has it");
     return *found;
 }
 

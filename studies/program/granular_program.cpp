@@ -25,6 +25,10 @@ int start_granular(const std::vector<std::string>& arguments)
     for (const std::string& a : arguments) words.push_back(const_cast<char*>(a.c_str()));
     words.push_back(nullptr);
     if (!program.empty()) execv(program.c_str(), words.data());
+    if (errno == ENOENT)
+        throw io::NotAvailable("granular: " + program +
+                               " was not built; './studies/run granular laws' in the source tree builds it "
+                               "(target hilda_granular_program), and the Debian package hilda has it");
     throw io::NotAvailable("granular: " + program + " cannot be started: " + std::strerror(errno));
 }
 

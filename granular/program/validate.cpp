@@ -48,10 +48,7 @@ void print(const ValidationTable& table)
 
 }  // namespace
 
-const Validation* find_validation(const std::string& name)
-{
-    return io::Registry<Validation>::find(name);
-}
+const Validation* find_validation(const std::string& name) { return io::Registry<Validation>::find(name); }
 
 int validate(const Validation& v, ValidationOptions options, bool quiet, bool strict)
 {

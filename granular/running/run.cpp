@@ -51,8 +51,7 @@ public:
     void open(long number)
     {
         restored_step = number;
-        if (prepare())
-            throw io::UsageError(o.output + ": its run is complete; --end with a later time extends it");
+        prepare();
         if (!resumed)
             begin_run(true);
         else if (earlier.end != steps || !from.changes.empty())
@@ -90,8 +89,10 @@ private:
                           c.boundaries.size(), steps, c.h));
         lock->create();
         if (o.resume) earlier = earlier_run(o, c);
-        if (earlier.is_complete && earlier.end == steps && from.changes.empty()) return report_complete(o, c);
-        if (earlier.is_complete && earlier.end == steps) refuse_end(o, c, c.end);
+        // The mechanism of a co-simulation may have been interrupted after the run of its grains had ended.
+        if (earlier.is_complete && earlier.end == steps && from.changes.empty() && restored_step < 0)
+            return report_complete(o, c);
+        if (earlier.is_complete && earlier.end == steps && restored_step < 0) refuse_end(o, c, c.end);
         resumed = o.resume && load();
         // with --strict the warnings of an earlier part of the run end this one
         if (resumed && !o.strict) known_warnings = c.world->watch().warnings;
@@ -162,7 +163,7 @@ private:
             }
             if (c.stages != nullptr && c.stages->have_no_step_left(*c.world) && earlier.end != steps)
                 refuse_end_after_stages(o, c.world->t());
-            if (c.world->steps() >= steps) refuse_end(o, c, c.world->t());
+            if (c.world->steps() >= steps && restored_step < 0) refuse_end(o, c, c.world->t());
             if (before_change) begin_change();
             rows = history.rows(c.world->steps(), interval);
             recorded = written = c.world->steps();

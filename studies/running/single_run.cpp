@@ -367,7 +367,11 @@ void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder
         line.clear();
         if (march.number() == grid.steps) {
             if (scheme.resumes) final_checkpoint = checkpoint(march, recorder);
-            if (options.coupling != nullptr) options.coupling->before_finish();
+            if (options.coupling != nullptr) {
+                // The two sides end one after the other. A run that is killed in between continues from here.
+                save_checkpoint(march, recorder);
+                options.coupling->before_finish();
+            }
             return march.finish(observers);
         }
         result.status = "interrupted";

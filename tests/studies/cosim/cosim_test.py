@@ -228,10 +228,31 @@ def one_result(runs):
     expect(process.returncode == 4 and "hilda-granular has ended during an exchange" in err, f"{process.returncode}: {err}")
     runs.finish("cut", "--output", "cut/lost", "--resume", "--transport", "pipe")
     expect(content(runs, "cut/lost") == whole, "a run whose grains were killed continues")
+    ends_one_by_one(runs, whole)
     runs.finish("cut", "--output", "cut/half", "--end", "0.012")
     runs.finish("cut", "--output", "cut/half", "--resume", "--end", "0.03")
     half = content(runs, "cut/half")
     expect(half == whole, f"a later end: {[name for name in whole if half.get(name) != whole[name]]} differ")
+
+
+def ends_one_by_one(runs, whole):
+    """Kills after the last step: the mechanism has not ended; the grains have, or have not"""
+    for substeps in 1, 4:
+        name = f"end{substeps}"
+        runs.files(name, dict(COSIM, substeps=substeps, end=0.03))
+        runs.finish(name, "--output", name + "/whole")
+        expected = content(runs, name + "/whole")
+        expect(substeps != 4 or expected == whole, "two equal runs")
+        for grains_have_ended in True, False:
+            cut = runs.folder / name / "cut"
+            shutil.copytree(runs.folder / name / "whole", cut)
+            for folder in [cut] if grains_have_ended else [cut, cut / "grains"]:
+                (folder / "checkpoint.end").rename(folder / "checkpoint")
+                (folder / "summary.json").unlink()
+            runs.finish(name, "--output", name + "/cut", "--resume")
+            got = content(runs, name + "/cut")
+            expect(got == expected, f"substeps {substeps}: {[name for name in expected if got.get(name) != expected[name]]} differ")
+            shutil.rmtree(cut)
 
 
 def ranks(runs):

@@ -51,10 +51,11 @@ macro(hilda_find_optional option help missing debian name)
     endif()
 endmacro()
 
-if(HILDA_TESTS)
-    set(HILDA_WITH_GRAINS ON CACHE STRING "" FORCE) # the tests need all rooms
+if(HILDA_TESTS OR HILDA_WITH_PYTHON STREQUAL "ON")
+    set(HILDA_WITH_GRAINS ON) # they use all rooms
 endif()
-hilda_find_optional(HILDA_WITH_GRAINS "Grains: hilda-granular, co-simulation, their studies" "there are no grains" libthrust-dev Thrust 1.17 CONFIG)
+hilda_find_optional(HILDA_WITH_GRAINS "Grains: hilda-granular, co-simulation, their studies" "there are no grains"
+    libthrust-dev Thrust 1.17 CONFIG)
 hilda_find_optional(HILDA_WITH_HDF5 "Tables in HDF5 files" "hilda run has no --format hdf5" libhdf5-dev HDF5Serial 1.10.2)
 # Open MPI: the program reads its environment variables.
 set(MPI_CXX_SKIP_MPICXX TRUE)

@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages, by cmake --build FOLDER --target package: hilda (programs), libhildaX.Y, libhilda-dev, python3-hilda, hilda-doc.
+if(NOT TARGET hilda_granular_program)
+    add_custom_target(package
+        COMMAND ${CMAKE_COMMAND} -E echo "hilda: error: the packages contain grains, and Thrust was not found (Debian: apt-get install libthrust-dev)"
+        COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
+    return()
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hilda)
 set(CPACK_PACKAGE_VENDOR "HILDA")

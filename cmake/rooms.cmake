@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How a room becomes targets.
 
-# Three precompiled headers: one owned by the lowest room with Eigen and used by all rooms below studies, one by studies, one by the tests of
-# the lowest room and used by all tests. A source file must include what it uses: the preset `tidy` builds without precompiled headers.
+# Three precompiled headers: one owned by the lowest room with Eigen and used by all rooms below studies, one by studies, one by
+# the tests of the lowest room and used by all tests. A source file must include what it uses: the preset `tidy` builds without
+# precompiled headers.
 #
 # Studies and tests are compiled with -O1 in a Release build, a quarter less time: the loops that take the time of a run are in the other
 # rooms. The optimisation is part of a precompiled header.
@@ -34,9 +35,9 @@ function(hilda_precompile target)
     endif()
 endfunction()
 
-# hilda_unity(<target> [ALONE <file>...]): with HILDA_UNITY the files of a folder are compiled in batches of at most eight. The headers and what
-# they instantiate, most of the time of a small file, then cost once. Files whose names would collide (ALONE) are
-# compiled by themselves, and so are those with properties of their own.
+# hilda_unity(<target> [ALONE <file>...]): with HILDA_UNITY the files of a folder are compiled in batches of at most eight. The
+# headers and what they instantiate, most of the time of a small file, then cost once. Files whose names would collide (ALONE)
+# are compiled by themselves, and so are those with properties of their own.
 #
 # Names in the unnamed namespaces of a folder must differ.
 function(hilda_unity target)

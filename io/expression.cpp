@@ -11,6 +11,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "io/formats/characters.hpp"
 #include "io/nearest.hpp"
 
 namespace hilda::io {
@@ -105,7 +106,6 @@ T evaluate(std::span<const Instruction> program, std::span<const T> variables) n
 
 // --- parser ---
 
-bool is_digit(char c) { return '0' <= c && c <= '9'; }
 bool is_letter(char c) { return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || c == '_'; }
 bool is_name_character(char c) { return is_letter(c) || is_digit(c) || c == '.'; }
 

@@ -2,6 +2,7 @@
 /// Recursive descent parser of JSON (RFC 8259). The errors name the place, the text that was found there and
 /// what is expected.
 #include "io/files.hpp"
+#include "io/formats/characters.hpp"
 #include "io/json_source.hpp"
 
 #include <algorithm>
@@ -18,7 +19,6 @@ namespace {
 constexpr double largest_exact_integer = 9007199254740991;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-bool is_json_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c)
 {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '+' || c == '-';
@@ -73,11 +73,11 @@ private:
         if (++values > JsonSource::max_values)
             fail(start, "the text has more than " + std::to_string(JsonSource::max_values) + " values");
         const char c = peek();
-        Json v = c == '{'                       ? object()
-                 : c == '['                     ? list()
-                 : c == '"'                     ? Json(string())
-                 : is_json_digit(c) || c == '-' ? Json(number())
-                                                : literal();
+        Json v = c == '{'                  ? object()
+                 : c == '['                ? list()
+                 : c == '"'                ? Json(string())
+                 : is_digit(c) || c == '-' ? Json(number())
+                                           : literal();
         v.offset = start;
         return v;
     }
@@ -94,10 +94,10 @@ private:
     {
         const std::size_t start = at;
         const auto digits = [&](const char* after) {
-            if (!is_json_digit(peek()))
+            if (!is_digit(peek()))
                 fail(start, std::string("not JSON: invalid number; expected digit after '") + after +
                                 "', got " + found(start) + finite_hint(start));
-            while (is_json_digit(peek())) ++at;
+            while (is_digit(peek())) ++at;
         };
         take('-');
         if (!take('0')) digits("-");
@@ -170,8 +170,8 @@ private:
         for (int k = 0; k < 4; ++k, ++at) {
             if (std::isxdigit(static_cast<unsigned char>(peek())) == 0)
                 invalid("'\\u' must be followed by 4 hex digits");
-            code = 16 * code +
-                   static_cast<unsigned>(is_json_digit(peek()) ? peek() - '0' : (peek() | 32) - 'a' + 10);
+            code =
+                16 * code + static_cast<unsigned>(is_digit(peek()) ? peek() - '0' : (peek() | 32) - 'a' + 10);
         }
         return code;
     }
@@ -319,10 +319,10 @@ private:
         if (c == '/' || c == '#') hint = "; JSON has no comments; use the key \"note\"";
         if (c == '\'') hint = "; strings must be in double quotes";
         const bool punctuation = std::string_view("{}[]:,").find(c) != std::string_view::npos;
-        const std::string what = punctuation                    ? "unexpected " + got
-                                 : c == '"'                     ? "unexpected string literal, got " + got
-                                 : is_json_digit(c) || c == '-' ? "unexpected number literal, got " + got
-                                                                : "invalid literal, got " + got;
+        const std::string what = punctuation               ? "unexpected " + got
+                                 : c == '"'                ? "unexpected string literal, got " + got
+                                 : is_digit(c) || c == '-' ? "unexpected number literal, got " + got
+                                                           : "invalid literal, got " + got;
         fail(at, "not JSON: " + what + (hint.empty() ? "; expected " + expected : hint));
     }
 

@@ -112,6 +112,7 @@ void Verbosity::log(const std::string& what) const
 
 Interrupt::Interrupt()
 {
+    static_assert(std::size(decltype(before){}) == std::size(interrupts));
     for (size_t k = 0; k < std::size(interrupts); ++k) sigaction(interrupts[k], nullptr, &before[k]);
     handle(record_signal);
 }

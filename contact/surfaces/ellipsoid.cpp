@@ -6,20 +6,9 @@
 
 namespace hilda::contact {
 
-namespace {
-
-const Vec3& positive_axes(const Vec3& semi_axes)
-{
-    for (double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()})
-        positive("contact::Ellipsoid", "a semi-axis of an ellipsoid", a);
-    return semi_axes;
-}
-
-}  // namespace
-
 Ellipsoid::Ellipsoid(const Vec3& semi_axes, bool concave)
-    : semi_axes(positive_axes(semi_axes)), concave(concave), L(std::cbrt(semi_axes.prod())),
-      curvature(L * semi_axes.cwiseAbs2().cwiseInverse())
+    : semi_axes(positive("contact::Ellipsoid", "a semi-axis of an ellipsoid", semi_axes)), concave(concave),
+      L(std::cbrt(semi_axes.prod())), curvature(L * semi_axes.cwiseAbs2().cwiseInverse())
 {}
 
 std::optional<Vec3> Ellipsoid::support(const Vec3& u) const

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "lie/check.hpp"
+#include "lie/so3.hpp"
 
 #include <cmath>
 
@@ -14,6 +15,13 @@ inline double positive(const char* where, const char* what, double x)
 {
     if (!(x > 0) || !std::isfinite(x))
         lie::reject(where, std::string(what) + " must be positive and finite", x);
+    return x;
+}
+
+/// The same for each component of a vector, as the semi-axes of an ellipsoid
+inline const lie::Vec3& positive(const char* where, const char* what, const lie::Vec3& x)
+{
+    for (const double component : {x.x(), x.y(), x.z()}) positive(where, what, component);
     return x;
 }
 

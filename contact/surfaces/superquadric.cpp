@@ -12,13 +12,6 @@ namespace {
 
 constexpr const char* where = "contact::Superquadric";
 
-const Vec3& positive_semi_axes(const Vec3& semi_axes)
-{
-    for (double a : {semi_axes.x(), semi_axes.y(), semi_axes.z()})
-        positive(where, "a semi-axis of a superquadric", a);
-    return semi_axes;
-}
-
 /// Above 100 the edges are too sharp: a contact point moves along them by large steps.
 bool exponent_allowed(double p) { return p >= 2 && p <= 100; }
 
@@ -32,8 +25,8 @@ double checked_exponent(double p)
 }  // namespace
 
 Superquadric::Superquadric(const Vec3& semi_axes, double p, double q)
-    : semi_axes(positive_semi_axes(semi_axes)), p(checked_exponent(p)), q(checked_exponent(q)),
-      L(std::cbrt(semi_axes.prod())), scale(L / std::max(p, q))
+    : semi_axes(positive(where, "a semi-axis of a superquadric", semi_axes)), p(checked_exponent(p)),
+      q(checked_exponent(q)), L(std::cbrt(semi_axes.prod())), scale(L / std::max(p, q))
 {}
 
 double Superquadric::value(const Vec3& a) const

@@ -182,7 +182,7 @@ public:
                                 .internal = internal,
                                 .clump_of = clump_of.size() > 0 ? clump_of.data() : nullptr};
         if constexpr (is_cpu)
-            cpu_loops().find_neighbours(neighbours, input, own.particle, own.pairs);
+            loops->find_neighbours(neighbours, input, own.particle, own.pairs);
         else
             neighbours.find(input, own.particle, own.pairs);
         find_attached();
@@ -196,8 +196,8 @@ public:
         if (!meshes->triangle.empty())
             triangle_pairs = list_pairs(HasTriangle{own.pairs.j.data()}, with_triangle);
         if constexpr (is_cpu)
-            cpu_loops().list_triangles(triangle_contacts, pair_view(), surfaces(), with_triangle.data(),
-                                       triangle_pairs);
+            loops->list_triangles(triangle_contacts, pair_view(), surfaces(), with_triangle.data(),
+                                  triangle_pairs);
         if (watched) prepare_watch();
     }
 
@@ -219,10 +219,9 @@ public:
         if constexpr (is_cpu) {
             // Those with triangles are the last ones of the list.
             const auto others = static_cast<std::uint32_t>(plan.list.size()) - triangle_pairs;
-            const CpuLoops& loops = cpu_loops();
-            loops.find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
-            loops.find_triangle_loads(triangle_contacts, particles, pairs, law_view(h),
-                                      own.pairs.start.data(), path);
+            loops->find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
+            loops->find_triangle_loads(triangle_contacts, particles, pairs, law_view(h),
+                                       own.pairs.start.data(), path);
             pending = {particles, pairs, law_view(h)};
         } else {
             if (triangle_pairs > 0)
@@ -356,7 +355,7 @@ protected:
     {
         ParticleView particles = particle_view(domain, own.particle);
         particles.position = neighbours.position_copy();
-        return watch.contact_sums(on, particles, pair_view(), law_view(h));
+        return watch.contact_sums(on, particles, pair_view(), law_view(h), loops);
     }
 
     KineticPart kinetic_part(double s) { return watch.kinetic_sums(on, own.particle, clump_view(), s); }
@@ -422,9 +421,8 @@ protected:
     {
         const std::uint32_t n = own.particle.count;
         if constexpr (is_cpu) {
-            const CpuLoops& loops = cpu_loops();
-            if (arrays.step.part == Part::before_loads) return loops.advance_before_loads(on, n, arrays);
-            return loops.sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, n);
+            if (arrays.step.part == Part::before_loads) return loops->advance_before_loads(on, n, arrays);
+            return loops->sweep(on, pending.particles, pending.pairs, pending.laws, arrays, plan, n);
         } else {
             return granular::advance(on, n, arrays);
         }
@@ -510,7 +508,14 @@ protected:
                                          : 1);
     }
 
+    static const CpuLoops* loops_of_backend()
+    {
+        if constexpr (is_cpu) return &cpu_loops();
+        return nullptr;
+    }
+
     const Backend on = {};
+    const CpuLoops* const loops = loops_of_backend();  ///< of the CPU, for the life of the engine
     Arrays<Backend> own;
     Arrays<par::Cpu> host;  ///< copy of a GPU's arrays; up to date if host_is_current
     bool host_is_current = false;

@@ -2,8 +2,9 @@
 #include "granular/backend/instruction_set.hpp"
 
 #include "io/error.hpp"
-#include "io/nearest.hpp"
+#include "io/option_values.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 
@@ -38,24 +39,21 @@ bool has_v4()
 }
 #endif
 
-std::string list(bool only_available)
-{
-    std::string names;
-    for (const InstructionSet& set : instruction_sets())
-        if (!only_available || set.available()) names += (names.empty() ? "" : ", ") + std::string(set.name);
-    return names;
-}
-
 const InstructionSet& named(const std::string& name, const std::string& origin)
 {
+    std::vector<std::string> all;
+    std::string available;
     for (const InstructionSet& set : instruction_sets()) {
-        if (name != set.name) continue;
-        if (!set.available())
-            throw io::NotAvailable(origin + ": this processor does not have " + set.name + " (" +
-                                   set.description + "); it has " + list(true));
-        return set;
+        all.emplace_back(set.name);
+        if (set.available()) available += (available.empty() ? "" : ", ") + all.back();
     }
-    throw io::UsageError(origin + ": must be one of " + list(false) + ", got '" + name + "'");
+    io::one_of(origin, name, all);
+    const InstructionSet& found = *std::find_if(instruction_sets().begin(), instruction_sets().end(),
+                                                [&](const InstructionSet& set) { return name == set.name; });
+    if (!found.available())
+        throw io::NotAvailable(origin + ": this processor does not have " + name + " (" + found.description +
+                               "); it has " + available);
+    return found;
 }
 
 const InstructionSet& default_set()
@@ -86,10 +84,12 @@ const std::vector<InstructionSet>& instruction_sets()
 
 const InstructionSet& instruction_set()
 {
-    const InstructionSet* set = chosen.load(std::memory_order_acquire);
-    if (set == nullptr) chosen.store(set = &default_set(), std::memory_order_release);
-    return *set;
+    if (const InstructionSet* const set = chosen_instruction_set()) return *set;
+    static const InstructionSet& by_default = default_set();
+    return by_default;
 }
+
+const InstructionSet* chosen_instruction_set() { return chosen.load(std::memory_order_acquire); }
 
 void choose_instruction_set(const std::string& name, const std::string& origin)
 {

@@ -21,14 +21,17 @@ struct InstructionSet {
 /// All instruction sets of this build, the widest one last
 const std::vector<InstructionSet>& instruction_sets();
 
-/// The instruction set in use: the one of the last choose_instruction_set(), otherwise the one that the
-/// environment variable HILDA_ISA names, otherwise the widest one that the processor has. Throws as
-/// choose_instruction_set().
+/// The instruction set of engines that are made from now on: the one of the last choose_instruction_set(),
+/// otherwise the one that the environment variable HILDA_ISA names, otherwise the widest one that the
+/// processor has. Throws as choose_instruction_set().
 const InstructionSet& instruction_set();
 
-/// Uses the instruction set `name` from now on. `origin`: of the name, for messages. Throws io::UsageError if
-/// the build does not have it, and io::NotAvailable if the processor does not; the messages list what there
-/// is.
+/// The one of the last choose_instruction_set(); nullptr without a call
+const InstructionSet* chosen_instruction_set();
+
+/// Chooses the instruction set `name` for engines that are made from now on. `origin`: of the name, for
+/// messages. Throws io::UsageError if the build does not have it, and io::NotAvailable if the processor does
+/// not; the messages list what there is.
 void choose_instruction_set(const std::string& name, const std::string& origin = "--isa");
 
 /// The loops of instruction_set()

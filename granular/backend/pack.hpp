@@ -4,7 +4,9 @@
 ///
 ///     sqrt(a), rint(a)       as those of real.hpp
 ///     bits(m)                bit k of the result: lane k of the mask
-///     Squares                the sum d² = x² + y² + z² and the difference D² - d², exact in 64-bit integers
+///     square_low(a)          the squares of the low halves of a, which are signed 32-bit integers
+///     interleaved_floats(even, odd)
+///                            signed 64-bit integers, rounded to the nearest floats, as the even and the odd lanes
 ///     load_rows, store_rows  four words of a row of memory for each lane, transposed to four packs
 ///     row_of_lane, load_consecutive, store_consecutive
 ///                            the same for `lanes` consecutive rows of 16 bytes from an address that is aligned to
@@ -29,6 +31,49 @@
 #endif
 
 namespace hilda::granular {
+
+#ifndef __AVX512F__  // the other sets have no stores by masks
+inline void set_flags(std::uint8_t* to, unsigned bits, unsigned which)
+{
+    if (which == (1u << lanes) - 1) return set_flags(to, bits);
+    for (; which != 0; which &= which - 1) {
+        const int k = __builtin_ctz(which);
+        to[k] = bits >> k & 1;
+    }
+}
+inline void compress(double* to, const double* from, unsigned bits)
+{
+    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
+}
+#endif
+
+/// The sum d² = x² + y² + z² and the difference D² - d², exact in 64-bit integers
+class Squares {
+public:
+    Squares() = default;
+    Squares(Ints x, Ints y, Ints z, Ints D)
+    {
+        const auto squares = [](const Wide* of, Wide& d2, Wide& q) {
+            d2 = square_low(of[0]) + square_low(of[1]) + square_low(of[2]);
+            q = square_low(of[3]) - d2;
+        };
+        const Wide even[4] = {Wide(x.v), Wide(y.v), Wide(z.v), Wide(D.v)},
+                   odd[4] = {even[0] >> 32, even[1] >> 32, even[2] >> 32, even[3] >> 32};
+        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
+    }
+    Pack sum() const { return interleaved_floats(even_d2, odd_d2); }
+    Pack difference() const { return interleaved_floats(even_q, odd_q); }
+    /// Bit k of the result: the difference of lane k is positive
+    unsigned positive() const
+    {
+        // the signs of the negative differences
+        const Wide signs = (-even_q >> 32) | (-odd_q & ~std::uint64_t{0xFFFFFFFF});
+        return bits(PackMask{PackMask::V(signs)});
+    }
+
+private:
+    Wide even_d2, odd_d2, even_q, odd_q;
+};
 
 /// Bit k of the result: the highest bit of word k
 inline unsigned highest_bits(const std::uint32_t* words)

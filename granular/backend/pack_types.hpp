@@ -79,6 +79,9 @@ struct RealType<Pack> {
     using Int = Ints;
 };
 
+/// The even or the odd lanes of a pack of integers, or what follows from them, as 64-bit integers. Sums wrap.
+using Wide __attribute__((vector_size(4 * lanes))) = std::uint64_t;
+
 inline Pack select(PackMask m, Pack a, Pack b) { return m.v ? a.v : b.v; }
 inline Pack abs(Pack a) { return select(PackMask{a.v < 0}, -a, a); }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "granular/backend/cpu_loops.hpp"
-#include "granular/backend/instruction_set.hpp"
 #include "granular/backend/pair_lists.hpp"
 #include "granular/backend/transfer.hpp"
 
@@ -105,10 +104,10 @@ public:
     }
 
     ContactPart contact_sums(const Backend& on, const ParticleView& particles, const PairView& pairs,
-                             const LawView& laws)
+                             const LawView& laws, [[maybe_unused]] const CpuLoops* loops)
     {
         if constexpr (std::is_same_v<Backend, par::Cpu>)
-            cpu_loops().add_contacts(on, particles, pairs, laws, contact_blocks.data());
+            loops->add_contacts(on, particles, pairs, laws, contact_blocks.data());
         else
             add_contacts(on, particles, pairs, laws, contact_blocks.data());
         return detail::total(on, contact_blocks, host_contact_blocks);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/distributed/commands.hpp"
 
+#include "granular/backend/instruction_set.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
 
@@ -148,6 +149,7 @@ int serve_engines(const Communicator& all)
             engines.erase(c.engine);
         } else if (c.call == Call::make_engine) {
             omp_set_num_threads(c.flag);
+            if (!bytes.empty()) choose_instruction_set(bytes);
             engines.try_emplace(c.engine, all);
         } else {
             make_call(engines.at(c.engine), c, Lists(std::move(bytes)));
@@ -162,7 +164,10 @@ namespace {
 /// Makes the engine with this number in the other processes. The first one has to follow.
 const Communicator& made_by_others(const Communicator& all, int number)
 {
-    send(all, {.call = Call::make_engine, .engine = number, .flag = omp_get_max_threads()}, {});
+    // A process without a name uses the widest vector instructions of its own processor.
+    const InstructionSet* const set = chosen_instruction_set();
+    send(all, {.call = Call::make_engine, .engine = number, .flag = omp_get_max_threads()},
+         Lists(set != nullptr ? set->name : ""));
     return all;
 }
 

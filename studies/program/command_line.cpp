@@ -3,7 +3,6 @@
 
 #include "io/error.hpp"
 #include "studies/cosim/cosim_file.hpp"
-#include "studies/cosim/grains.hpp"
 #include "studies/distribution/communicator.hpp"
 #include "studies/importing/export_urdf.hpp"
 #include "studies/importing/import_model.hpp"
@@ -11,6 +10,7 @@
 #include "studies/program/collect.hpp"
 #include "studies/program/columns_help.hpp"
 #include "studies/program/command_options.hpp"
+#include "studies/program/grains.hpp"
 #include "studies/program/granular_program.hpp"
 #include "studies/program/info.hpp"
 #include "studies/program/lists.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loads hilda-grains.so.
-#include "studies/cosim/grains.hpp"
+#include "studies/program/grains.hpp"
 
 #include "io/error.hpp"
 #include "io/module.hpp"

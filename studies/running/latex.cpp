@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/latex.hpp"
 
+#include "io/formats/characters.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -10,7 +12,6 @@ namespace hilda::studies {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
 
 /// The parts of an unsigned number at the beginning of a text
@@ -23,11 +24,11 @@ Number number_at(std::string_view text)
 {
     size_t k = 0;
     const auto digits = [&] {
-        while (k < text.size() && is_digit(text[k])) ++k;
+        while (k < text.size() && io::is_digit(text[k])) ++k;
     };
     digits();
     if (k == 0) return {};
-    if (k + 1 < text.size() && text[k] == '.' && is_digit(text[k + 1])) ++k, digits();
+    if (k + 1 < text.size() && text[k] == '.' && io::is_digit(text[k + 1])) ++k, digits();
     Number number{text.substr(0, k), {}, k};
     if (k < text.size() && text[k] == 'e') {
         size_t begin = ++k;

@@ -18,46 +18,17 @@ inline Pack rint(Pack a)
 }
 inline unsigned bits(PackMask m) { return static_cast<unsigned>(_mm256_movemask_ps(__m256(m.v))); }
 
-class Squares {
-public:
-    Squares() = default;
-    Squares(Ints x, Ints y, Ints z, Ints D)
-    {
-        // The multiplication reads the even lanes; the odd ones are shifted into them.
-        const auto squares = [](const auto& of, __m256i& d2, __m256i& q) {
-            const auto square = [](__m256i a) { return _mm256_mul_epi32(a, a); };
-            d2 = _mm256_add_epi64(_mm256_add_epi64(square(of[0]), square(of[1])), square(of[2]));
-            q = _mm256_sub_epi64(square(of[3]), d2);
-        };
-        const __m256i even[4] = {__m256i(x.v), __m256i(y.v), __m256i(z.v), __m256i(D.v)};
-        __m256i odd[4];
-        for (int k = 0; k < 4; ++k) odd[k] = _mm256_srli_epi64(even[k], 32);
-        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
-    }
-    Pack sum() const { return merged(even_d2, odd_d2); }
-    Pack difference() const { return merged(even_q, odd_q); }
-    /// Bit k of the result: the difference of lane k is positive
-    unsigned positive() const
-    {
-        const __m256i zero = _mm256_setzero_si256(), even = _mm256_sub_epi64(zero, even_q),
-                      odd = _mm256_sub_epi64(zero, odd_q);
-        return bits(PackMask{PackMask::V(_mm256_blend_epi32(_mm256_srli_epi64(even, 32), odd, 0b10101010))});
-    }
-
-private:
-    // AVX2 has no conversion of 64-bit integers.
-    static Pack merged(__m256i even, __m256i odd)
-    {
-        alignas(32) std::int64_t e[4], o[4];
-        _mm256_store_si256(reinterpret_cast<__m256i*>(e), even),
-            _mm256_store_si256(reinterpret_cast<__m256i*>(o), odd);
-        Pack out;
-        for (int k = 0; k < 4; ++k)
-            out.v[2 * k] = static_cast<float>(e[k]), out.v[2 * k + 1] = static_cast<float>(o[k]);
-        return out;
-    }
-    __m256i even_d2, odd_d2, even_q, odd_q;
-};
+inline Wide square_low(Wide a) { return Wide(_mm256_mul_epi32(__m256i(a), __m256i(a))); }
+// AVX2 has no conversion of vectors of 64-bit integers.
+inline Pack interleaved_floats(Wide even, Wide odd)
+{
+    alignas(32) std::int64_t e[4], o[4];
+    std::memcpy(e, &even, sizeof e), std::memcpy(o, &odd, sizeof o);
+    Pack out;
+    for (int k = 0; k < 4; ++k)
+        out.v[2 * k] = static_cast<float>(e[k]), out.v[2 * k + 1] = static_cast<float>(o[k]);
+    return out;
+}
 
 namespace detail {
 
@@ -147,14 +118,6 @@ inline void set_flags(std::uint8_t* to, unsigned bits)
                   ones = _mm_and_si128(_mm_cmpeq_epi8(of_lane, each), _mm_set1_epi8(1));
     _mm_storel_epi64(reinterpret_cast<__m128i*>(to), ones);
 }
-inline void set_flags(std::uint8_t* to, unsigned bits, unsigned which)
-{
-    if (which == 0xFF) return set_flags(to, bits);
-    for (; which != 0; which &= which - 1) {
-        const int k = __builtin_ctz(which);
-        to[k] = bits >> k & 1;
-    }
-}
 inline Ints select(unsigned bits, Ints a, Ints b)
 {
     const __m256i each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -168,10 +131,6 @@ inline void compress(T* to, const Word& words, unsigned bits)
     static_assert(sizeof(T) == 4);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
                         _mm256_permutevar8x32_epi32(__m256i(words.v), detail::lanes_of(bits)));
-}
-inline void compress(double* to, const double* from, unsigned bits)
-{
-    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
 }
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
 {

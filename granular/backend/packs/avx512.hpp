@@ -18,42 +18,14 @@ inline Pack rint(Pack a)
 }
 inline unsigned bits(PackMask m) { return _mm512_movepi32_mask(__m512i(m.v)); }
 
-class Squares {
-public:
-    Squares() = default;
-    Squares(Ints x, Ints y, Ints z, Ints D)
-    {
-        // The multiplication reads the even lanes; the odd ones are shifted into them.
-        const auto squares = [](const auto& of, __m512i& d2, __m512i& q) {
-            const auto square = [](__m512i a) { return _mm512_mul_epi32(a, a); };
-            d2 = _mm512_add_epi64(_mm512_add_epi64(square(of[0]), square(of[1])), square(of[2]));
-            q = _mm512_sub_epi64(square(of[3]), d2);
-        };
-        const __m512i even[4] = {__m512i(x.v), __m512i(y.v), __m512i(z.v), __m512i(D.v)};
-        __m512i odd[4];
-        for (int k = 0; k < 4; ++k) odd[k] = _mm512_srli_epi64(even[k], 32);
-        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
-    }
-    Pack sum() const { return merged(even_d2, odd_d2); }
-    Pack difference() const { return merged(even_q, odd_q); }
-    /// Bit k of the result: the difference of lane k is positive
-    unsigned positive() const
-    {
-        const __m512i zero = _mm512_setzero_si512(), even = _mm512_sub_epi64(zero, even_q),
-                      odd = _mm512_sub_epi64(zero, odd_q);
-        return _mm512_movepi32_mask(_mm512_mask_blend_epi32(0xAAAA, _mm512_srli_epi64(even, 32), odd));
-    }
-
-private:
-    static Pack merged(__m512i even, __m512i odd)
-    {
-        const auto wide = [](__m512i a) {
-            return _mm512_cvtepu32_epi64(_mm256_castps_si256(_mm512_cvtepi64_ps(a)));
-        };
-        return Pack::V(_mm512_or_si512(wide(even), _mm512_slli_epi64(wide(odd), 32)));
-    }
-    __m512i even_d2, odd_d2, even_q, odd_q;
-};
+inline Wide square_low(Wide a) { return Wide(_mm512_mul_epi32(__m512i(a), __m512i(a))); }
+inline Pack interleaved_floats(Wide even, Wide odd)
+{
+    const auto wide = [](Wide a) {
+        return _mm512_cvtepu32_epi64(_mm256_castps_si256(_mm512_cvtepi64_ps(__m512i(a))));
+    };
+    return Pack::V(_mm512_or_si512(wide(even), _mm512_slli_epi64(wide(odd), 32)));
+}
 
 namespace detail {
 

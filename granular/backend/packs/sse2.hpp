@@ -22,48 +22,21 @@ inline Pack rint(Pack a)
 }
 inline unsigned bits(PackMask m) { return static_cast<unsigned>(_mm_movemask_ps(__m128(m.v))); }
 
-class Squares {
-public:
-    Squares() = default;
-    Squares(Ints x, Ints y, Ints z, Ints D)
-    {
-        // The multiplication is one of unsigned numbers. It reads the even lanes; the odd ones are shifted
-        // into them.
-        const auto squares = [](const auto& of, __m128i& d2, __m128i& q) {
-            const auto square = [](__m128i a) { return _mm_mul_epu32(a, a); };
-            d2 = _mm_add_epi64(_mm_add_epi64(square(of[0]), square(of[1])), square(of[2]));
-            q = _mm_sub_epi64(square(of[3]), d2);
-        };
-        const auto size = [](Ints a) {
-            const __m128i sign = _mm_srai_epi32(__m128i(a.v), 31);
-            return _mm_sub_epi32(_mm_xor_si128(__m128i(a.v), sign), sign);
-        };
-        const __m128i even[4] = {size(x), size(y), size(z), size(D)};
-        __m128i odd[4];
-        for (int k = 0; k < 4; ++k) odd[k] = _mm_srli_epi64(even[k], 32);
-        squares(even, even_d2, even_q), squares(odd, odd_d2, odd_q);
-    }
-    Pack sum() const { return merged(even_d2, odd_d2); }
-    Pack difference() const { return merged(even_q, odd_q); }
-    /// Bit k of the result: the difference of lane k is positive
-    unsigned positive() const
-    {
-        const __m128i zero = _mm_setzero_si128(), even = _mm_sub_epi64(zero, even_q),
-                      odd = _mm_sub_epi64(zero, odd_q), high = _mm_setr_epi32(0, -1, 0, -1);
-        return bits(PackMask{PackMask::V(_mm_or_si128(_mm_srli_epi64(even, 32), _mm_and_si128(odd, high)))});
-    }
-
-private:
-    // SSE2 has no conversion of vectors of 64-bit integers.
-    static Pack merged(__m128i even, __m128i odd)
-    {
-        const auto high = [](__m128i a) { return _mm_cvtsi128_si64(_mm_unpackhi_epi64(a, a)); };
-        const auto low = [](__m128i a) { return _mm_cvtsi128_si64(a); };
-        return Pack::V{static_cast<float>(low(even)), static_cast<float>(low(odd)),
-                       static_cast<float>(high(even)), static_cast<float>(high(odd))};
-    }
-    __m128i even_d2, odd_d2, even_q, odd_q;
-};
+inline Wide square_low(Wide a)
+{
+    // The multiplication is one of unsigned numbers.
+    const __m128i sign = _mm_srai_epi32(__m128i(a), 31),
+                  size = _mm_sub_epi32(_mm_xor_si128(__m128i(a), sign), sign);
+    return Wide(_mm_mul_epu32(size, size));
+}
+// SSE2 has no conversion of vectors of 64-bit integers.
+inline Pack interleaved_floats(Wide even, Wide odd)
+{
+    const auto high = [](Wide a) { return _mm_cvtsi128_si64(_mm_unpackhi_epi64(__m128i(a), __m128i(a))); };
+    const auto low = [](Wide a) { return _mm_cvtsi128_si64(__m128i(a)); };
+    return Pack::V{static_cast<float>(low(even)), static_cast<float>(low(odd)),
+                   static_cast<float>(high(even)), static_cast<float>(high(odd))};
+}
 
 namespace detail {
 
@@ -122,14 +95,6 @@ inline void set_flags(std::uint8_t* to, unsigned bits)
     const std::uint32_t ones = bits * 0x00204081u & 0x01010101u;  // bit k to bit 8 k
     std::memcpy(to, &ones, sizeof ones);
 }
-inline void set_flags(std::uint8_t* to, unsigned bits, unsigned which)
-{
-    if (which == 0xF) return set_flags(to, bits);
-    for (; which != 0; which &= which - 1) {
-        const int k = __builtin_ctz(which);
-        to[k] = bits >> k & 1;
-    }
-}
 inline Ints select(unsigned bits, Ints a, Ints b)
 {
     const Ints::V each = {1, 2, 4, 8}, set = (static_cast<std::int32_t>(bits) & each) != 0;
@@ -144,10 +109,6 @@ inline void compress(T* to, const Word& words, unsigned bits)
         *to = words.v[k];
         to += bits >> k & 1;
     }
-}
-inline void compress(double* to, const double* from, unsigned bits)
-{
-    for (; bits != 0; bits &= bits - 1) *to++ = from[__builtin_ctz(bits)];
 }
 inline std::uint32_t append(std::uint32_t* to, std::uint32_t first, unsigned bits)
 {

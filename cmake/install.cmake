@@ -20,7 +20,8 @@ set_target_properties(hilda_library PROPERTIES
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 target_compile_features(hilda_library PUBLIC cxx_std_20)
 target_include_directories(hilda_library PUBLIC
-    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>" $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hilda>)
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR};${hilda_generated};${PROJECT_BINARY_DIR}/granular/generated>"
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hilda>)
 target_link_libraries(hilda_library PUBLIC
     Eigen3::Eigen KLU::KLU SPQR::SPQR fmt::fmt)
 if(NOT HILDA_SANITIZE)
@@ -45,6 +46,7 @@ function(hilda_component room)
         EXPORT_NAME ${room}
         VERSION ${PROJECT_VERSION}
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+        BUILD_WITH_INSTALL_RPATH ON # all libraries lie in one folder, in the build as well
         INSTALL_RPATH "$ORIGIN")
     target_compile_features(hilda_${room}_library PUBLIC cxx_std_20)
     # The libraries in PRIVATE are not needed to compile against this one: the package does not search them.
@@ -163,12 +165,37 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/studies/plots" DESTINATION "${CMAKE_INS
     FILES_MATCHING REGEX "[.](py|js|html)$")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 
-configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/hildaConfig.cmake"
-    INSTALL_DESTINATION "${hilda_package_dir}" PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_DATADIR)
+set(hilda_source_dir "${CMAKE_INSTALL_DATADIR}/hilda/source")
+configure_package_config_file(cmake/hildaConfig.cmake.in "${PROJECT_BINARY_DIR}/installed/hildaConfig.cmake"
+    INSTALL_DESTINATION "${hilda_package_dir}" PATH_VARS CMAKE_INSTALL_LIBDIR hilda_source_dir)
 # Before 1.0 a minor version may be incompatible.
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/installed/hildaConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(EXPORT hilda_targets FILE hildaTargets.cmake NAMESPACE hilda:: DESTINATION "${hilda_package_dir}")
 install(
-    FILES "${PROJECT_BINARY_DIR}/hildaConfig.cmake" "${PROJECT_BINARY_DIR}/hildaConfigVersion.cmake"
+    FILES "${PROJECT_BINARY_DIR}/installed/hildaConfig.cmake" "${PROJECT_BINARY_DIR}/installed/hildaConfigVersion.cmake"
         "${PROJECT_SOURCE_DIR}/cmake/FindKLU.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindSPQR.cmake"
     DESTINATION "${hilda_package_dir}")
+
+# The same package for this build folder, without an installation: CMAKE_PREFIX_PATH=build/release
+file(REMOVE "${PROJECT_BINARY_DIR}/hildaConfig.cmake") # of version 0.1, which find_package would find first
+set(package "${PROJECT_BINARY_DIR}/lib/cmake/hilda")
+function(hilda_package_of_build)
+    set(CMAKE_INSTALL_LIBDIR .)
+    set(hilda_source_dir "${PROJECT_SOURCE_DIR}")
+    set(hilda_generated_dir "${hilda_generated}")
+    configure_package_config_file(cmake/hildaConfig.cmake.in "${package}/hildaConfig.cmake"
+        INSTALL_PREFIX "${PROJECT_BINARY_DIR}" INSTALL_DESTINATION "${package}" PATH_VARS CMAKE_INSTALL_LIBDIR hilda_source_dir)
+endfunction()
+hilda_package_of_build()
+foreach(file "${PROJECT_BINARY_DIR}/installed/hildaConfigVersion.cmake" "${PROJECT_SOURCE_DIR}/cmake/FindKLU.cmake"
+        "${PROJECT_SOURCE_DIR}/cmake/FindSPQR.cmake" "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake"
+        "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp")
+    get_filename_component(name "${file}" NAME)
+    configure_file("${file}" "${package}/${name}" COPYONLY)
+endforeach()
+export(EXPORT hilda_targets FILE "${package}/hildaTargets.cmake" NAMESPACE hilda::)
+foreach(room reference granular studies)
+    if(TARGET hilda_${room}_library)
+        export(EXPORT hilda_${room}_targets FILE "${package}/hilda-${room}.cmake" NAMESPACE hilda::)
+    endif()
+endforeach()

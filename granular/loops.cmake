@@ -32,7 +32,8 @@ function(granular_compile_loops name root variable)
     set(move_v4 -mmove-max=512 -mstore-max=512)
     foreach(set v3 v4)
         set(target ${name}_${set})
-        add_library(${target} OBJECT ${sources})
+        # An archive, not an object library: of the latter's files the generator Make knows no rule outside of their target.
+        add_library(${target} STATIC EXCLUDE_FROM_ALL ${sources})
         target_include_directories(${target} PRIVATE ${arg_INCLUDES})
         target_compile_features(${target} PRIVATE cxx_std_20)
         target_compile_definitions(${target} PRIVATE HILDA_LOOPS=${set})
@@ -43,10 +44,10 @@ function(granular_compile_loops name root variable)
         set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON UNITY_BUILD OFF)
         set(object "${CMAKE_CURRENT_BINARY_DIR}/${target}.o")
         add_custom_command(OUTPUT "${object}"
-            COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o "${object}.global" $<TARGET_OBJECTS:${target}>
+            COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o "${object}.global" --whole-archive $<TARGET_FILE:${target}>
             COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=hilda_granular_loops_${set} "${object}.global" "${object}"
             COMMAND ${CMAKE_COMMAND} -E rm "${object}.global"
-            DEPENDS $<TARGET_OBJECTS:${target}> COMMAND_EXPAND_LISTS VERBATIM)
+            DEPENDS ${target} VERBATIM)
         list(APPEND objects "${object}")
     endforeach()
     add_custom_target(${name}_loops DEPENDS ${objects})

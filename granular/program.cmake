@@ -38,13 +38,13 @@ function(granular_add_program name)
         list(APPEND sources "${root}/backend/engine_no_gpu.cpp")
     endif()
     add_executable(${name} ${sources})
-    target_include_directories(${name} BEFORE PRIVATE "${generated}" "${root}/..")
+    target_include_directories(${name} BEFORE PRIVATE "${generated}" "${root}/.." ${hilda_granular_headers})
     target_compile_features(${name} PRIVATE cxx_std_20)
     # The flags of hilda-granular, so that both programs give the same bytes.
     target_compile_options(${name} PRIVATE
         "$<$<COMPILE_LANGUAGE:CXX>:${flags};-Wno-psabi>" "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<CONFIG:Debug>>>:-O3>")
     if(hilda_granular_dispatch) # the objects in hilda_granular_parts refer to the loops for all instruction sets
-        granular_compile_loops(${name} "${root}" loops INCLUDES "${generated}" "${root}/.."
+        granular_compile_loops(${name} "${root}" loops INCLUDES "${generated}" "${root}/.." ${hilda_granular_headers}
             FLAGS ${flags} $<$<NOT:$<CONFIG:Debug>>:-O3>)
         target_sources(${name} PRIVATE ${loops})
     endif()

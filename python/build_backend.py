@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build backend of the Python packages hilda and hilda_granular (PEP 517).
 
-Compiles the extension modules by CMake in build/python-cpython-311, and packs them with the files of python/ into one wheel.
-Uses the standard library only. Environment: HILDA_CMAKE_ARGS has further arguments of CMake,
-CMAKE_BUILD_PARALLEL_LEVEL the number of jobs.
+Compiles the extension modules against the libraries of build/release, which it builds first where they are missing or old, in
+build/python-cpython-311. The wheel contains the modules, the files of python/ and these libraries. Uses the standard library only.
+
+Environment:
+    HILDA_LIBRARIES             another build folder, or the prefix of an installation, whose libraries are used as they are
+    CMAKE_BUILD_PARALLEL_LEVEL  number of jobs
 """
 
 import base64
@@ -11,7 +14,6 @@ import hashlib
 import os
 import pathlib
 import re
-import shlex
 import shutil
 import subprocess
 import sys
@@ -36,13 +38,19 @@ def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     compile_modules()
+    installed = BUILD / "wheel"
+    shutil.rmtree(installed, ignore_errors=True)
+    command(["cmake", "--install", BUILD, "--prefix", installed])
     files = {}
     for package, module in MODULES.items():
         for path in sorted((ROOT / "python" / package).iterdir()):
             if path.suffix in (".py", ".pyi", ".typed"):
                 files[f"{package}/{path.name}"] = path
         compiled = f"{package}/{module}{sysconfig.get_config_var('EXT_SUFFIX')}"
-        files[compiled] = BUILD / "python" / compiled
+        files[compiled] = installed / compiled
+    for library in (BUILD / "libraries.txt").read_text().split("\n"):
+        if library:
+            files[f"hilda/lib/{pathlib.Path(library).name}"] = pathlib.Path(library)
     return write_wheel(pathlib.Path(wheel_directory), files)
 
 
@@ -66,21 +74,43 @@ def metadata():
     return {**project, "version": version[1]}
 
 
+def libraries():
+    """The prefix in which CMake finds the libraries. Builds those of build/release."""
+    if given := os.environ.get("HILDA_LIBRARIES"):
+        return pathlib.Path(given).resolve()
+    folder = ROOT / "build" / "release"
+    cache = folder / "CMakeCache.txt"
+    options = ["-DHILDA_WITH_GRAINS=ON"]
+    if cache.exists():
+        generator = re.search(r"^CMAKE_GENERATOR:INTERNAL=(.*)$", cache.read_text(), re.MULTILINE)
+        if generator and generator[1] != "Ninja":
+            raise SystemExit(f"hilda: error: build/release was configured with {generator[1]}, and the presets use Ninja; "
+                             "remove the folder: rm -r build/release")
+    else:
+        options += ["-DHILDA_TESTS=OFF", "-DHILDA_WITH_PYTHON=OFF"]
+    command(["cmake", "--preset", "release", *options])
+    build(folder, "hilda_library", *(f"hilda_{room}_library" for room in ("granular", "reference", "studies")))
+    return folder
+
+
 def compile_modules():
     """Configures and builds the extension modules."""
-    for tool in ("cmake", "c++"):
+    for tool in ("cmake", "ninja", "c++"):
         if shutil.which(tool) is None:
-            raise SystemExit(f"hilda: error: {tool} was not found (Debian: apt-get install g++ cmake)")
-    generator = ["-G", "Ninja"] if shutil.which("ninja") and not (BUILD / "CMakeCache.txt").exists() else []
-    command(["cmake", "-S", ROOT, "-B", BUILD, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DHILDA_TESTS=OFF", "-DHILDA_CUDA=OFF",
-             "-DHILDA_WITH_PYTHON=ON", f"-DHILDA_PYTHON={sys.executable}", *shlex.split(os.environ.get("HILDA_CMAKE_ARGS", ""))])
+            raise SystemExit(f"hilda: error: {tool} was not found (Debian: apt-get install g++ cmake ninja-build)")
+    command(["cmake", "-S", ROOT / "python", "-B", BUILD, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={libraries()}",
+             f"-DHILDA_PYTHON={sys.executable}"])
+    build(BUILD, "all")
+
+
+def build(folder, *targets):
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL", str(os.cpu_count()))
-    command(["cmake", "--build", BUILD, "--parallel", jobs, "--target", "hilda_python", "hilda_granular_python"])
+    command(["cmake", "--build", folder, "--parallel", jobs, "--target", *targets])
 
 
 def command(arguments):
     try:
-        subprocess.run(arguments, check=True)
+        subprocess.run(arguments, check=True, cwd=ROOT)
     except subprocess.CalledProcessError as error:
         raise SystemExit(f"hilda: error: '{' '.join(map(str, arguments[:2]))} ...' ended with {error.returncode}") from None
 

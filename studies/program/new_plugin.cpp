@@ -48,8 +48,8 @@ const std::vector<Kind>& kinds()
              "  cmake -S {0} -B {0}/build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=PREFIX\n"
              "  cmake --build {0}/build\n"
              "  hilda --load {0}/build/{1}.so study convergence --integrator rA-half-2,{1}\n\n"
-             "PREFIX: where HILDA is installed (cmake --install). docs/extending/integrator.md describes "
-             "the interface.\n"},
+             "PREFIX: the build folder of HILDA, build/release, or where it is installed. "
+             "docs/extending/integrator.md describes the interface.\n"},
         {.name = "granular-law",
          .word = "my-law",
          .files = {{"normal/my_law.hpp", law_header_text},
@@ -61,8 +61,8 @@ const std::vector<Kind>& kinds()
                      "  cmake -S {0} -B {0}/build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=PREFIX\n"
                      "  cmake --build {0}/build\n"
                      "  {0}/build/{1}-granular {0}/head_on.json --output {0}/out\n\n"
-                     "PREFIX: where HILDA is installed (cmake --install). docs/extending/granular-law.md "
-                     "describes the interface.\n"}};
+                     "PREFIX: the build folder of HILDA, build/release, or where it is installed. "
+                     "docs/extending/granular-law.md describes the interface.\n"}};
     return all;
 }
 

@@ -35,16 +35,19 @@ function(hilda_precompile target)
     endif()
 endfunction()
 
-# hilda_unity(<target> [ALONE <file>...]): with HILDA_UNITY the files of a folder are compiled in batches of at most eight. The
+# hilda_unity(<target> [TOGETHER "<folder>..."...] [ALONE <file>...]): with HILDA_UNITY the files of a folder are compiled in
+# batches of at most eight. The files of the folders that an entry of TOGETHER lists ("." is that of the target) are one batch. The
 # headers and what they instantiate, most of the time of a small file, then cost once. Files whose names would collide (ALONE)
-# are compiled by themselves, and so are those with properties of their own.
+# are compiled by themselves, and so are those with properties of their own. Two cores are busy to the end if no batch takes more
+# than half a minute.
 #
-# Names in the unnamed namespaces of a folder must differ.
+# Names in the unnamed namespaces of a batch must differ. Files with the same short symbols have a named namespace around the
+# unnamed one.
 function(hilda_unity target)
     if(NOT HILDA_UNITY)
         return()
     endif()
-    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "ALONE")
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "TOGETHER;ALONE")
     get_target_property(files ${target} SOURCES)
     get_target_property(folder ${target} SOURCE_DIR)
     list(SORT files)
@@ -57,33 +60,47 @@ function(hilda_unity target)
             continue()
         endif()
         get_filename_component(of_file "${name}" DIRECTORY)
-        if(NOT of_file STREQUAL before)
-            set(before "${of_file}")
-            set(count 0)
+        if(NOT of_file)
+            set(of_file ".")
         endif()
-        math(EXPR batch "${count} / 8")
-        math(EXPR count "${count} + 1")
-        string(MAKE_C_IDENTIFIER "${of_file}_${batch}" group)
+        set(group "")
+        foreach(together IN LISTS arg_TOGETHER)
+            separate_arguments(folders UNIX_COMMAND "${together}")
+            if(of_file IN_LIST folders)
+                list(GET folders 0 first)
+                string(MAKE_C_IDENTIFIER "${first}_together" group)
+            endif()
+        endforeach()
+        if(NOT group)
+            if(NOT of_file STREQUAL before)
+                set(before "${of_file}")
+                set(count 0)
+            endif()
+            math(EXPR batch "${count} / 8")
+            math(EXPR count "${count} + 1")
+            string(MAKE_C_IDENTIFIER "${of_file}_${batch}" group)
+        endif()
         set_source_files_properties("${file}" TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP "${group}")
     endforeach()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# hilda_room(<room> SOURCES <file>... [ROOMS <room>...] [LIBRARIES <target>...] [ALONE <file>...])
+# hilda_room(<room> SOURCES <file>... [ROOMS <room>...] [LIBRARIES <target>...] [TOGETHER "<folder>..."...] [ALONE <file>...])
 #
+#   TOGETHER, ALONE see hilda_unity
 #   <room>_objects  the compiled files; link this to compile against the room
 #   hilda_<room>    the room with its objects and all rooms below; link this to make a program
 #
 # Object libraries, not archives: an archive drops the object files that nobody calls, and the list of schemes
 # would be empty. A program that reaches a room by two paths still gets its objects once.
 function(hilda_room room)
-    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;ROOMS;LIBRARIES;ALONE")
+    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;ROOMS;LIBRARIES;TOGETHER;ALONE")
 
     add_library(${room}_objects OBJECT ${arg_SOURCES})
     target_include_directories(${room}_objects PUBLIC "${PROJECT_SOURCE_DIR}")
     target_link_libraries(${room}_objects PUBLIC ${arg_LIBRARIES})
     hilda_precompile(${room}_objects)
-    hilda_unity(${room}_objects ALONE ${arg_ALONE})
+    hilda_unity(${room}_objects TOGETHER ${arg_TOGETHER} ALONE ${arg_ALONE})
 
     add_library(hilda_${room} INTERFACE)
     target_sources(hilda_${room} INTERFACE $<TARGET_OBJECTS:${room}_objects>)

@@ -8,7 +8,7 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double infinite_mass = std::numeric_limits<double>::infinity();
 constexpr double longest_lever = 10;  // upper limit of the lever arm of rolling, relative to the smaller size
 
 /// Moment of inertia about n, nᵀ J n, and the mean over the tangent directions [kg m²]
@@ -17,7 +17,7 @@ struct Moments {
 };
 Moments moments(const Inertia& body, const Mat3& A, const Vec3& n)
 {
-    if (!body.turns()) return {infinite, infinite};
+    if (!body.turns()) return {infinite_mass, infinite_mass};
     const Vec3 n_bar = A.transpose() * n;
     const double normal = n_bar.dot(body.J_bar * n_bar);
     return {normal, 0.5 * (body.J_bar.trace() - normal)};

@@ -7,7 +7,7 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr double rounding =
+constexpr double length_rounding =
     1e-15;  // of positions: a displacement below this fraction of them has no direction
 
 /// p_b: from the present position of the old contact point c_bar to the new contact point C, in the tangent
@@ -18,7 +18,7 @@ Vec3 surface_displacement(const Vec3& c_bar, const Vec3& C, const Vec3& n, const
     const Vec3 s = b.A * c_bar, d = C - (b.r + s);
     const Vec3 t = d - n * n.dot(d);
     const double length = t.norm();
-    if (length <= rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
+    if (length <= length_rounding * (b.r.norm() + s.norm())) return Vec3::Zero();
     return surface.arc(d.norm()) / length * t;
 }
 

@@ -10,7 +10,7 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr const char* where = "contact::Superquadric";
+constexpr const char* in_superquadric = "contact::Superquadric";
 
 /// Above 100 the edges are too sharp: a contact point moves along them by large steps.
 bool exponent_allowed(double p) { return p >= 2 && p <= 100; }
@@ -18,15 +18,16 @@ bool exponent_allowed(double p) { return p >= 2 && p <= 100; }
 double checked_exponent(double p)
 {
     if (!exponent_allowed(p))
-        lie::reject(where, "an exponent of a superquadric must be between 2 and 100", p);
+        lie::reject(in_superquadric, "an exponent of a superquadric must be between 2 and 100", p);
     return p;
 }
 
 }  // namespace
 
 Superquadric::Superquadric(const Vec3& semi_axes, double p, double q)
-    : semi_axes(positive(where, "a semi-axis of a superquadric", semi_axes)), p(checked_exponent(p)),
-      q(checked_exponent(q)), L(std::cbrt(semi_axes.prod())), scale(L / std::max(p, q))
+    : semi_axes(positive(in_superquadric, "a semi-axis of a superquadric", semi_axes)),
+      p(checked_exponent(p)), q(checked_exponent(q)), L(std::cbrt(semi_axes.prod())),
+      scale(L / std::max(p, q))
 {}
 
 double Superquadric::value(const Vec3& a) const

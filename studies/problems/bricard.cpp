@@ -10,6 +10,7 @@
 #include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
+#include "studies/problems/components.hpp"
 
 #include <fmt/format.h>
 
@@ -19,8 +20,6 @@ namespace hilda::studies {
 namespace {
 
 using lie::Vec3;
-
-std::string list(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 std::string bricard_model()
 {
@@ -37,7 +36,7 @@ std::string bricard_model()
         Vec3 J;
         for (int c = 0; c < 3; ++c) J[c] = along[c] != 0 ? 0.01 / 6 : 1.01 / 12;
         bodies += fmt::format(R"({}    {{"name": "rod_{}", "mass": 1, "inertia": {}, "r": {}}})",
-                              k == 0 ? "" : ",\n", k + 1, list(J), list(middle(k)));
+                              k == 0 ? "" : ",\n", k + 1, components(J), components(middle(k)));
     }
     for (int k = 0; k <= rods; ++k) {
         const std::string i = k == 0 ? "ground" : fmt::format("rod_{}", k),
@@ -47,7 +46,8 @@ std::string bricard_model()
         joints += fmt::format(
             R"({}    {{"name": "joint_{}", "type": "revolute", "body_i": "{}", "s_bar_p_i": {}, "axis_bar_i": {},
      "body_j": "{}", "s_bar_q_j": {}, "axis_bar_j": {}}})",
-            k == 0 ? "" : ",\n", k + 1, i, list(at_i), list(axis[k % 3]), j, list(at_j), list(axis[k % 3]));
+            k == 0 ? "" : ",\n", k + 1, i, components(at_i), components(axis[k % 3]), j, components(at_j),
+            components(axis[k % 3]));
     }
     return fmt::format(R"({{
   "hilda_model": 1,

@@ -10,6 +10,7 @@
 #include "dae/model_file.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
+#include "studies/problems/components.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,6 @@ namespace {
 
 using lie::Mat3;
 using lie::Vec3;
-
-std::string components(const Vec3& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
 
 /// A rod with its point mass; the x axis of the body points from the hinge to the point mass.
 struct Rod {

@@ -36,9 +36,9 @@
 namespace hilda::contact {
 namespace {
 
-constexpr double no_direction = 1e-14;  // a shorter vector is treated as zero [m], [rad]
-constexpr double no_curvature = 1e-12;  // relative rounding error of a curvature
-constexpr double min_curvature = 1e-9;  // spinning friction is zero if κ_i + κ_j is smaller [1/m]
+constexpr double no_direction = 1e-14;        // a shorter vector is treated as zero [m], [rad]
+constexpr double curvature_rounding = 1e-12;  // relative rounding error of a curvature
+constexpr double min_curvature = 1e-9;        // spinning friction is zero if κ_i + κ_j is smaller [1/m]
 
 /// Normal curvature along t, or the mean curvature if t is zero [1/m]
 double curvature(const Mat3& K, const Vec3& t)
@@ -62,7 +62,7 @@ struct RollingLevers {
             // the principal directions do not change
             const double raised = std::max(mean + apart, floor);
             const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-            if (apart > no_curvature * std::abs(mean))
+            if (apart > curvature_rounding * std::abs(mean))
                 K = floor * I + (raised - floor) / (2 * apart) * (K - least * I);
             else
                 K = raised * I;

@@ -7,7 +7,7 @@
 
 #include "contact/surfaces/foot.hpp"
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::brick_runs {
 
 namespace {
 
@@ -59,4 +59,4 @@ const bool brick_angles = register_experiment(
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::brick_runs

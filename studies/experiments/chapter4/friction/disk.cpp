@@ -15,7 +15,7 @@
 
 #include <numbers>
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::disk_runs {
 
 namespace {
 
@@ -167,4 +167,4 @@ const bool rolling_models = register_experiment(
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::disk_runs

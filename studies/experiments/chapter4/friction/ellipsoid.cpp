@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::ellipsoid_runs {
 
 namespace {
 
@@ -95,4 +95,4 @@ const bool ellipsoid =
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::ellipsoid_runs

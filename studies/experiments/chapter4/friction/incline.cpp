@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::incline_runs {
 
 namespace {
 
@@ -135,4 +135,4 @@ const bool incline = register_experiment({.name = "incline",
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::incline_runs

@@ -15,7 +15,7 @@
 
 #include <numbers>
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::spin_runs {
 
 namespace {
 
@@ -266,4 +266,4 @@ const bool spinning_ellipsoid =
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::spin_runs

@@ -12,7 +12,7 @@
 
 #include <numbers>
 
-namespace hilda::studies::friction {
+namespace hilda::studies::friction::turntable_runs {
 
 namespace {
 
@@ -77,4 +77,4 @@ const bool turntable = register_experiment(
 
 }  // namespace
 
-}  // namespace hilda::studies::friction
+}  // namespace hilda::studies::friction::turntable_runs

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Studies under mpirun.
 #include "tests/studies/csv.hpp"
+#include "tests/studies/distribution/divided_studies.hpp"
 #include "tests/studies/refused.hpp"
 
 #include <catch2/catch.hpp>
@@ -9,11 +10,6 @@ using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
 namespace {
-
-const std::vector<std::string> incline = {"study",   "incline-sweep", "--grid",   "coarse",
-                                          "--steps", "1e-3",          "--no-plot"};
-const std::vector<std::string> swing = {"study",  "sweep",    "swing.json", "--sweep", "/bodies/0/mass=1:5:5",
-                                        "--keep", "--no-plot"};
 
 /// A call under mpirun. `end_at` as HILDA_END_AT of tests/support/end_at_write.cpp.
 Ended mpirun(const Scratch& in, int ranks, const std::vector<std::string>& arguments,

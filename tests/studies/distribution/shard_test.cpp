@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda study --shard I/N and hilda collect.
 #include "tests/studies/csv.hpp"
+#include "tests/studies/distribution/divided_studies.hpp"
 #include "tests/studies/refused.hpp"
 #include "tests/studies/resumed_run.hpp"
 
@@ -11,11 +12,6 @@ using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
 
 namespace {
-
-const std::vector<std::string> incline = {"study",   "incline-sweep", "--grid",   "coarse",
-                                          "--steps", "1e-3",          "--no-plot"};
-const std::vector<std::string> swing = {"study",  "sweep",    "swing.json", "--sweep", "/bodies/0/mass=1:5:5",
-                                        "--keep", "--no-plot"};
 
 std::string folder(const std::string& begin, int index, int count)
 {

@@ -20,8 +20,8 @@ const std::vector<std::string> all_failing = {"--problem", "double_pendulum",  "
                                               "0.1",       "--integrator",     "rA-half-1,rA-full-1",
                                               "--no-plot", "--max-iterations", "3"};
 
-Ended study(const Scratch& in, const std::string& kind, const std::vector<std::string>& arguments,
-            const std::vector<std::string>& more = {})
+Ended call_study(const Scratch& in, const std::string& kind, const std::vector<std::string>& arguments,
+                 const std::vector<std::string>& more = {})
 {
     return call(in, with(with({"study", kind}, arguments), more));
 }
@@ -32,7 +32,7 @@ TEST_CASE("a failed run has a row in the table and the other runs continue", "[s
 {
     const std::string kind = GENERATE("energy", "iterations", "timing");
     const Scratch in;
-    const Ended ended = study(in, kind, mixed);
+    const Ended ended = call_study(in, kind, mixed);
     CAPTURE(kind, ended.out, ended.err);
     CHECK(ended.code == 0);
     CHECK_THAT(ended.out, Contains("newton_diverged") && Contains("\nfailed:\n"));
@@ -50,7 +50,7 @@ TEST_CASE("a study exits with 4 if all of its runs fail", "[studies][member]")
     const std::string kind =
         GENERATE("convergence", "compare", "energy", "iterations", "timing", "work-precision");
     const Scratch in;
-    const Ended ended = study(in, kind, all_failing);
+    const Ended ended = call_study(in, kind, all_failing);
     CAPTURE(kind, ended.err);
     CHECK(ended.code == 4);
     CHECK_THAT(ended.err, StartsWith("hilda: error[newton_diverged]: study " + kind + ": all 2 runs failed"));
@@ -66,7 +66,7 @@ TEST_CASE("convergence and work-precision write the rows of failed runs", "[stud
     std::vector<std::string> arguments = {"--problem",    "double_pendulum", "--steps",  "0.1,2e-2",
                                           "--integrator", "rA-full-1",       "--no-plot"};
     if (kind == "work-precision") arguments.insert(arguments.end(), {"--repeats", "1"});
-    const Ended ended = study(in, kind, arguments);
+    const Ended ended = call_study(in, kind, arguments);
     CAPTURE(kind, ended.out, ended.err);
     CHECK(ended.code == 0);
     const auto rows = csv(in / "out" / kind / "study.csv");

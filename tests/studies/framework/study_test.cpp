@@ -10,7 +10,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-Ended study(const Scratch& in, const std::vector<std::string>& more)
+Ended convergence_study(const Scratch& in, const std::vector<std::string>& more)
 {
     return call(in, with({"study", "convergence", "--problem", "double_pendulum", "--end", "0.3",
                           "--integrator", "rA-half-2", "--steps", "1e-2,5e-3,2.5e-3", "--no-plot"},
@@ -22,14 +22,14 @@ Ended study(const Scratch& in, const std::vector<std::string>& more)
 TEST_CASE("a study writes its table, and exits with 6 when an expectation fails", "[studies][study]")
 {
     const Scratch in;
-    const Ended passed = study(in, {"--expect", "order=2+-0.2"});
+    const Ended passed = convergence_study(in, {"--expect", "order=2+-0.2"});
     CAPTURE(passed.err);
     CHECK(passed.code == 0);
     CHECK(fs::exists(in / "out/convergence/study.csv"));
     CHECK(fs::exists(in / "out/convergence/study.json"));
 
-    CHECK(study(in, {}).code == 2);  // the directory is not empty
-    const Ended failed = study(in, {"--expect", "order=7", "--force"});
+    CHECK(convergence_study(in, {}).code == 2);  // the directory is not empty
+    const Ended failed = convergence_study(in, {"--expect", "order=7", "--force"});
     CHECK(failed.code == 6);
     CHECK_THAT(failed.err, StartsWith("hilda: error: expected order=7, got "));
 }
@@ -37,7 +37,7 @@ TEST_CASE("a study writes its table, and exits with 6 when an expectation fails"
 TEST_CASE("a study with --json prints one object and writes files only with --output", "[studies][study]")
 {
     const Scratch in;
-    const Ended ended = study(in, {"--json"});
+    const Ended ended = convergence_study(in, {"--json"});
     CHECK(ended.code == 0);
     CHECK(nlohmann::json::parse(ended.out)["study"] == "convergence");
     CHECK_FALSE(fs::exists(in / "out"));

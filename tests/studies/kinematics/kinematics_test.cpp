@@ -13,7 +13,7 @@ using Catch::Matchers::StartsWith;
 namespace {
 
 /// A bar of 1 kg and 1 m that is turned about x by angle = t^2
-const std::string driven_bar = R"({"hilda_model": 1, "name": "bar", "end": 1,
+const std::string driven_bar_file = R"({"hilda_model": 1, "name": "bar", "end": 1,
  "bodies": [{"name": "bar", "mass": 1, "inertia": [0.25, 0.001, 0.25], "r": [0, 0.5, 0]}],
  "constraints": [
   {"name": "pivot", "type": "revolute", "body_i": "ground", "body_j": "bar", "s_bar_q_j": [0, -0.5, 0],
@@ -26,7 +26,7 @@ const std::string driven_bar = R"({"hilda_model": 1, "name": "bar", "end": 1,
 TEST_CASE("kinematics computes the motion and the torque of a driven bar", "[studies][kinematics]")
 {
     const Scratch in;
-    write(in / "bar.json", driven_bar);
+    write(in / "bar.json", driven_bar_file);
     const Ended ended = call(in, {"kinematics", "bar.json", "--interval", "0.05", "--reactions"});
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
@@ -68,7 +68,7 @@ TEST_CASE("kinematics replaces the files of a run, and writes the projected init
           "[studies][kinematics]")
 {
     const Scratch in;
-    std::string moved = driven_bar;
+    std::string moved = driven_bar_file;
     moved.replace(moved.find("[0, 0.5, 0]"), 11, "[0, 0.52, 0]");
     write(in / "bar.json", moved);
     REQUIRE(call(in, {"run", "bar.json", "--fix-initial", "--end", "0.1", "--output", "d"}).code == 0);
@@ -84,7 +84,7 @@ TEST_CASE("kinematics counts the turns between two rows and ends at the end",
           "[studies][kinematics][outputs]")
 {
     const Scratch in;
-    std::string model = driven_bar;
+    std::string model = driven_bar_file;
     model.replace(model.find("t^2"), 3, "20*t");
     model.insert(model.rfind('}'), R"(, "outputs": [{"name": "turn", "type": "angle", "body_i": "ground",
         "body_j": "bar", "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}])");

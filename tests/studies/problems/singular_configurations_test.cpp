@@ -19,7 +19,7 @@ using namespace hilda;
 namespace {
 
 /// The model of a problem with its joints in a random order; seed 0 is the order of the problem
-dae::Description started(const std::string& problem, unsigned seed = 0)
+dae::Description started_in_order(const std::string& problem, unsigned seed = 0)
 {
     auto json = nlohmann::ordered_json::parse(studies::problem(problem).model);
     std::mt19937 random(seed);
@@ -68,11 +68,11 @@ Result run(const dae::Description& d, const lie::Scheme& scheme, double t_end, d
 
 lie::State exact(const std::string& problem, double t)
 {
-    dae::Description d = started(problem);
+    dae::Description d = started_in_order(problem);
     return studies::problem(problem).reference_solution(d, {t}).row.front();
 }
 
-double distance(const lie::State& x, const lie::State& y)
+double position_distance(const lie::State& x, const lie::State& y)
 {
     double most = 0;
     for (size_t b = 0; b < x.body.size(); ++b) most = std::max(most, (x.body[b].r - y.body[b].r).norm());
@@ -86,12 +86,12 @@ void check_all_orders(const std::string& problem, unsigned orders, double h, dou
     for (const auto& [scheme, step] : {std::pair(lie::scheme("rA-half-1-momentum"), h),
                                        {lie::scheme("rA-rattle"), h},
                                        {lie::scheme("rA-dop853").with_adaptive_steps(), 0.1}}) {
-        const Result natural = run(started(problem), scheme, 10, step);
+        const Result natural = run(started_in_order(problem), scheme, 10, step);
         for (unsigned seed = 0; seed < orders; ++seed) {
             INFO(problem << " " << scheme.name << ", order " << seed);
-            const Result result = run(started(problem, seed), scheme, 10, step);
+            const Result result = run(started_in_order(problem, seed), scheme, 10, step);
             CHECK(result.energy_error < energy_error);
-            CHECK(distance(result.end, natural.end) < difference);
+            CHECK(position_distance(result.end, natural.end) < difference);
         }
     }
 }
@@ -101,12 +101,13 @@ void check_all_orders(const std::string& problem, unsigned orders, double h, dou
 TEST_CASE("integrators with redundant rows pass a flat configuration of the N-four-bar with their order",
           "[studies][singular]")
 {
-    const dae::Description d = started("n_four_bar");
+    const dae::Description d = started_in_order("n_four_bar");
     const lie::State x = exact("n_four_bar", 1);
     for (const lie::Scheme& s : lie::schemes()) {
         if (!s.redundant) continue;
         INFO(s.name);
-        const double coarse = distance(run(d, s, 1, 4e-3).end, x), fine = distance(run(d, s, 1, 2e-3).end, x);
+        const double coarse = position_distance(run(d, s, 1, 4e-3).end, x),
+                     fine = position_distance(run(d, s, 1, 2e-3).end, x);
         INFO(coarse << ' ' << fine);
         if (s.name.starts_with("rA-full-1")) {
             CHECK(std::log2(coarse / fine) == Approx(1).margin(0.3));
@@ -119,17 +120,17 @@ TEST_CASE("integrators with redundant rows pass a flat configuration of the N-fo
         }
     }
     const lie::Scheme& dop853 = lie::scheme("rA-dop853").with_adaptive_steps();
-    CHECK(distance(run(d, dop853, 1, 0.1).end, x) < 1e-7);
+    CHECK(position_distance(run(d, dop853, 1, 0.1).end, x) < 1e-7);
 }
 
 TEST_CASE("Bricard's mechanism has the order of the integrator", "[studies][singular]")
 {
-    const dae::Description d = started("bricard");
+    const dae::Description d = started_in_order("bricard");
     const lie::State x = exact("bricard", 0.5);
     for (const char* name : {"rA-half-1-momentum", "rA-rattle", "rA-genalpha", "rA-rkmk-4"}) {
         const lie::Scheme& s = lie::scheme(name);
-        const double coarse = distance(run(d, s, 0.5, 4e-3).end, x),
-                     fine = distance(run(d, s, 0.5, 2e-3).end, x);
+        const double coarse = position_distance(run(d, s, 0.5, 4e-3).end, x),
+                     fine = position_distance(run(d, s, 0.5, 2e-3).end, x);
         INFO(name << ' ' << coarse << ' ' << fine);
         CHECK(std::log2(coarse / fine) == Approx(s.order).margin(0.2));
     }
@@ -139,7 +140,7 @@ TEST_CASE("integrators with redundant rows run the N-four-bar for 10 s (long)", 
 {
     for (const auto& [problem, h] :
          {std::pair("n_four_bar", 1e-3), {"n_four_bar_10", 1e-3}, {"n_four_bar_40", 2e-3}}) {
-        const dae::Description d = started(problem);
+        const dae::Description d = started_in_order(problem);
         const double scale = static_cast<double>(d.x.body.size()) / 5;
         for (const lie::Scheme& s : lie::schemes()) {
             if (!s.redundant || s.name.starts_with("rA-rattle-")) continue;
@@ -159,8 +160,8 @@ TEST_CASE("the order of the joints does not change the motion in 10 s (long)", "
 
 TEST_CASE("the flyball governor runs with implicit springs", "[studies][singular]")
 {
-    const dae::Description d = started("flyball_governor");
+    const dae::Description d = started_in_order("flyball_governor");
     const lie::State x = exact("flyball_governor", 0.2);
     const lie::Scheme& s = lie::scheme("rA-half-1-momentum");
-    CHECK(distance(run(d, s, 0.2, 1e-3).end, x) < 1e-3);
+    CHECK(position_distance(run(d, s, 0.2, 1e-3).end, x) < 1e-3);
 }

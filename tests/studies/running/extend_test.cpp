@@ -10,8 +10,8 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// The directory follows.
-const std::vector<std::string> slider_crank = {"run",     "slider_crank", "--interval", "1e-3",
-                                               "--quiet", "--log-steps",  "--output"};
+const std::vector<std::string> slider_crank_into = {"run",     "slider_crank", "--interval", "1e-3",
+                                                    "--quiet", "--log-steps",  "--output"};
 
 }  // namespace
 
@@ -47,33 +47,33 @@ TEST_CASE("an interrupted run can be continued to a later or an earlier end", "[
 {
     const std::string end = GENERATE("0.7", "0.3");
     const Scratch in;
-    REQUIRE(call(in, with(slider_crank, {"whole", "--end", end})).code == 0);
+    REQUIRE(call(in, with(slider_crank_into, {"whole", "--end", end})).code == 0);
     // The checkpoint of the start, and then one of each step: the signal comes in step 200.
-    const Ended first = call(in, with(slider_crank, {"parts", "--end", "0.5", "--checkpoint", "1e-9"}),
+    const Ended first = call(in, with(slider_crank_into, {"parts", "--end", "0.5", "--checkpoint", "1e-9"}),
                              {.end_at = {SIGINT, 201, "parts/checkpoint.new.tmp"}});
     REQUIRE(first.code == 130);
     REQUIRE(summary(in / "parts")["counters"]["t"] == 0.2);
 
-    check_refused(in, with(slider_crank, {"parts", "--resume", "--end", "1e-4"}), 2,
+    check_refused(in, with(slider_crank_into, {"parts", "--resume", "--end", "1e-4"}), 2,
                   "--end must be after t = 0.2 s, which the run in parts has reached, got 0.0001");
-    REQUIRE(call(in, with(slider_crank, {"parts", "--resume", "--end", end})).code == 0);
+    REQUIRE(call(in, with(slider_crank_into, {"parts", "--resume", "--end", end})).code == 0);
     check_same_results(in / "parts", in / "whole");
 }
 
 TEST_CASE("an extended run that is killed continues to the later end", "[studies][resume]")
 {
     const Scratch in;
-    REQUIRE(call(in, with(slider_crank, {"parts", "--end", "0.05"})).code == 0);
+    REQUIRE(call(in, with(slider_crank_into, {"parts", "--end", "0.05"})).code == 0);
     REQUIRE(fs::exists(in / "parts/checkpoint.end"));
     const auto complete = fs::file_size(in / "parts/trajectory.csv");
     const Ended killed =
-        call(in, with(slider_crank, {"parts", "--end", "0.5", "--resume", "--checkpoint", "1e-9"}),
+        call(in, with(slider_crank_into, {"parts", "--end", "0.5", "--resume", "--checkpoint", "1e-9"}),
              {.end_at = {SIGKILL, 150, "parts/checkpoint.new.tmp"}});
     REQUIRE(killed.code == 137);
     CHECK_FALSE(fs::exists(in / "parts/summary.json"));
     CHECK(fs::file_size(in / "parts/trajectory.csv") > 2 * complete);
-    REQUIRE(call(in, with(slider_crank, {"parts", "--resume"})).code == 0);  // the end of the checkpoint
-    REQUIRE(call(in, with(slider_crank, {"whole", "--end", "0.5"})).code == 0);
+    REQUIRE(call(in, with(slider_crank_into, {"parts", "--resume"})).code == 0);  // the end of the checkpoint
+    REQUIRE(call(in, with(slider_crank_into, {"whole", "--end", "0.5"})).code == 0);
     check_same_results(in / "parts", in / "whole");
 }
 

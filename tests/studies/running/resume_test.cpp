@@ -8,7 +8,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-std::vector<std::string> slider_crank(const std::string& integrator)
+std::vector<std::string> slider_crank_with(const std::string& integrator)
 {
     return {"run",        "slider_crank", "--integrator", integrator,    "--end",   "1",
             "--interval", "1e-3",         "--reactions",  "--log-steps", "--euler", "zxz"};
@@ -24,10 +24,10 @@ TEST_CASE("an interrupted and killed run, resumed, gives the result of an uninte
     const std::string integrator = GENERATE("rA-half-1", "rA-half-2", "rA-full-1");
     CAPTURE(integrator);
     const Scratch in;
-    check_resumed(in, slider_crank(integrator),
+    check_resumed(in, slider_crank_with(integrator),
                   {{SIGINT, 200}, {SIGKILL, 150}, {SIGKILL, 3}, {SIGTERM, 240}});
     const Scratch in_klu;
-    check_resumed(in_klu, with(slider_crank(integrator), {"--linear-solver", "klu"}),
+    check_resumed(in_klu, with(slider_crank_with(integrator), {"--linear-solver", "klu"}),
                   {{SIGINT, 200}, {SIGKILL, 150}, {SIGKILL, 3}, {SIGTERM, 240}});
     CHECK(summary(in_klu / "whole")["counters"]["factorizations"] >= 4);
 }
@@ -35,7 +35,7 @@ TEST_CASE("an interrupted and killed run, resumed, gives the result of an uninte
 TEST_CASE("an interruption writes a checkpoint without --checkpoint as well", "[studies][resume]")
 {
     const Scratch in;
-    const std::vector<std::string> run = with(slider_crank("rA-half-1"), {"--quiet", "--output", "a"});
+    const std::vector<std::string> run = with(slider_crank_with("rA-half-1"), {"--quiet", "--output", "a"});
     // trajectory.csv is written for the first time when its rows fill a buffer.
     const Ended ended = call(in, run, {.end_at = {SIGTERM, 1, "a/trajectory.csv"}});
     REQUIRE(ended.code == 143);

@@ -214,7 +214,7 @@ std::vector<Data> collection(const tests::fs::path& file)
     return all;
 }
 
-size_t files(const tests::fs::path& directory)
+size_t file_count(const tests::fs::path& directory)
 {
     return static_cast<size_t>(
         std::distance(tests::fs::directory_iterator(directory), tests::fs::directory_iterator()));
@@ -338,8 +338,8 @@ TEST_CASE("a plane is drawn over the region of the other bodies", "[studies][vtk
     CHECK(end.point.size() == 1 + 266 + 81);  // contact, ball, floor once
 
     Snapshots::remove(in.path.string(), "a<b>&\"c\"");
-    CHECK(files(in.path) == 1);
-    CHECK(files(in / "vtk") == 0);
+    CHECK(file_count(in.path) == 1);
+    CHECK(file_count(in / "vtk") == 0);
 }
 
 TEST_CASE("the friction study writes frames with the contact forces", "[studies][vtk][friction]")
@@ -350,7 +350,7 @@ TEST_CASE("the friction study writes frames with the contact forces", "[studies]
     CAPTURE(ended.err);
     REQUIRE(ended.code == 0);
     CHECK_THAT(ended.out, Contains("out/friction/incline-*.pvd"));
-    CHECK(files(in / "out/friction/vtk") == 2 * 4);
+    CHECK(file_count(in / "out/friction/vtk") == 2 * 4);
     for (const std::string run : {"dissertation", "balanced"}) {
         const std::vector<Data> listed = collection(in / ("out/friction/incline-" + run + ".pvd"));
         REQUIRE(listed.size() == 4);
@@ -368,7 +368,7 @@ TEST_CASE("the friction study writes frames with the contact forces", "[studies]
     CHECK(
         call(in, {"study", "friction", "--problem", "incline", "--vtk", "1", "--force", "--no-plot"}).code ==
         0);
-    CHECK(files(in / "out/friction/vtk") == 2);
+    CHECK(file_count(in / "out/friction/vtk") == 2);
 }
 
 TEST_CASE("a study rejects --vtk if it would write no frames", "[studies][vtk]")
@@ -396,7 +396,7 @@ TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
     REQUIRE(ended.code == 0);
     const std::vector<Data> listed = collection(in / "out/run.pvd");
     REQUIRE(listed.size() == 6);
-    CHECK(files(in / "out/vtk") == 6);
+    CHECK(file_count(in / "out/vtk") == 6);
     for (size_t k = 0; k < listed.size(); ++k) {
         CHECK(std::stod(listed[k].time) == Approx(0.02 * static_cast<double>(k)));
         const Frame frame(in / ("out/" + listed[k].file));
@@ -411,7 +411,7 @@ TEST_CASE("a run writes frames of compliant contacts", "[studies][vtk]")
     // a second run without --vtk removes the frames
     CHECK(call(in, {"run", "rolling_ball", "--end", "0.1", "--output", "out", "--force"}).code == 0);
     CHECK_FALSE(tests::fs::exists(in / "out/run.pvd"));
-    CHECK(files(in / "out/vtk") == 0);
+    CHECK(file_count(in / "out/vtk") == 0);
 }
 
 TEST_CASE("a run writes frames of a mechanism without contacts", "[studies][vtk]")
@@ -536,6 +536,6 @@ TEST_CASE("a killed and resumed run writes the frames of an uninterrupted run", 
 {
     const Scratch in;
     tests::check_resumed(in, {"run", "rolling_ball", "--end", "0.5", "--vtk", "0.02"});
-    CHECK(files(in / "parts/vtk") == 26);
+    CHECK(file_count(in / "parts/vtk") == 26);
     CHECK(collection(in / "parts/run.pvd").size() == 26);
 }

@@ -23,9 +23,9 @@ std::string balls(const std::string& contacts)
 }
 
 const std::string spring = R"("normal": {"type": "hooke", "stiffness": 1e4})";
-const std::string sphere = R"({"type": "sphere", "radius": 0.1})";
+const std::string ball_surface = R"({"type": "sphere", "radius": 0.1})";
 const std::string each_two =
-    R"({"name": "balls", "bodies": "all", "surface": )" + sphere + ", " + spring + "}";
+    R"({"name": "balls", "bodies": "all", "surface": )" + ball_surface + ", " + spring + "}";
 
 std::vector<std::string> names(const dae::Description& d)
 {
@@ -34,7 +34,7 @@ std::vector<std::string> names(const dae::Description& d)
     return all;
 }
 
-std::string refusal(const std::string& contacts)
+std::string refusal_of_contacts(const std::string& contacts)
 {
     try {
         dae::Description d = dae::read_model(balls(contacts), "m.json");
@@ -46,9 +46,10 @@ std::string refusal(const std::string& contacts)
 }
 
 /// A contact of a group given by `keys`, between spheres and planes of the same kind
-std::string entry(const std::string& keys, const std::string& surface_j = sphere)
+std::string entry(const std::string& keys, const std::string& surface_j = ball_surface)
 {
-    return "{" + keys + ", \"surface_i\": " + sphere + ", \"surface_j\": " + surface_j + ", " + spring + "}";
+    return "{" + keys + ", \"surface_i\": " + ball_surface + ", \"surface_j\": " + surface_j + ", " + spring +
+           "}";
 }
 
 }  // namespace
@@ -88,7 +89,7 @@ TEST_CASE("a group gives the same motion as its pairs written one by one", "[con
 
 TEST_CASE("each body of one list meets each body of another", "[contact][groups]")
 {
-    const auto of = [](const std::string& keys, const std::string& surface_j = sphere) {
+    const auto of = [](const std::string& keys, const std::string& surface_j = ball_surface) {
         return names(dae::read_model(balls(entry(keys, surface_j)), "m.json"));
     };
     using Names = std::vector<std::string>;
@@ -112,7 +113,7 @@ TEST_CASE("a group of constraint contacts reads the surfaces once and keeps the 
           "[contact][groups]")
 {
     const std::string floor = R"({"name": "floor", "body_i": "all", "body_j": "ground", "surface_i": )" +
-                              sphere +
+                              ball_surface +
                               R"(, "surface_j": {"type": "plane"}, "normal": {"type": "constraint"}})";
     dae::Description d = dae::read_model(balls(floor), "m.json", {}, "fixed-xy");
     CHECK(d.general_place.size() == 4);
@@ -135,18 +136,20 @@ TEST_CASE("an error of one pair names the group and the pair", "[contact][groups
               "tenth of the radius of curvature 0.1 m, got 0.15 m");
     }
     CHECK_THAT(
-        refusal(
+        refusal_of_contacts(
             R"({"name": "balls", "bodies": "all", "surface": {"type": "sphere", "radius": 0.1, "concave": true}, )" +
             spring + "}"),
         Catch::StartsWith("m.json:3:14 (/contacts/0): contact 'balls: b1-b2': contact::make_detector: "));
-    CHECK_THAT(refusal(R"({"bodies": "all", "surface": {"type": "sphere", "radius": -1}, )" + spring + "}"),
+    CHECK_THAT(refusal_of_contacts(R"({"bodies": "all", "surface": {"type": "sphere", "radius": -1}, )" +
+                                   spring + "}"),
                Catch::Contains("(/contacts/0/surface/radius): radius must be positive, got -1"));
 }
 
 TEST_CASE("wrong groups are refused", "[contact][groups]")
 {
     const auto group = [](const std::string& bodies) {
-        return refusal(R"({"bodies": )" + bodies + ", \"surface\": " + sphere + ", " + spring + "}");
+        return refusal_of_contacts(R"({"bodies": )" + bodies + ", \"surface\": " + ball_surface + ", " +
+                                   spring + "}");
     };
     CHECK_THAT(group("[]"), Catch::Contains("(/contacts/0/bodies): bodies must not be an empty list"));
     CHECK_THAT(group(R"(["b1"])"), Catch::Contains("a group must have at least two bodies, got 1"));
@@ -157,16 +160,17 @@ TEST_CASE("wrong groups are refused", "[contact][groups]")
     CHECK_THAT(group(R"(["b1", 7])"), Catch::Contains("no body has this id, got 7"));
     CHECK_THAT(group(R"(["b1", null])"), Catch::Contains("must be the name or the id of a body, got null"));
     CHECK_THAT(group(R"("b1")"), Catch::Contains("bodies must be a list of bodies or \"all\", got \"b1\""));
-    CHECK_THAT(refusal(entry(R"("bodies": "all")")),
+    CHECK_THAT(refusal_of_contacts(entry(R"("bodies": "all")")),
                Catch::Contains("(/contacts/0/surface_i): surface_i does not go with bodies"));
-    CHECK_THAT(refusal(R"({"bodies": "all", )" + spring + "}"), Catch::Contains("missing key 'surface'"));
-    CHECK_THAT(refusal(entry(R"("body_i": ["b1"], "body_j": "b1")")),
+    CHECK_THAT(refusal_of_contacts(R"({"bodies": "all", )" + spring + "}"),
+               Catch::Contains("missing key 'surface'"));
+    CHECK_THAT(refusal_of_contacts(entry(R"("body_i": ["b1"], "body_j": "b1")")),
                Catch::Contains("must contain two different bodies"));
-    CHECK_THAT(refusal(entry(R"("body_i": "b1", "body_j": "b1")")),
+    CHECK_THAT(refusal_of_contacts(entry(R"("body_i": "b1", "body_j": "b1")")),
                Catch::Contains("body_i and body_j must be two different bodies, got 'b1' twice"));
-    CHECK_THAT(refusal(entry(R"("body_i": "al", "body_j": "ground")")),
+    CHECK_THAT(refusal_of_contacts(entry(R"("body_i": "al", "body_j": "ground")")),
                Catch::Contains("no body has this name, got \"al\""));
-    CHECK_THAT(refusal(each_two + ", " + each_two),
+    CHECK_THAT(refusal_of_contacts(each_two + ", " + each_two),
                Catch::Contains("(/contacts/1/name): this name is already used, got \"balls\""));
 }
 

@@ -29,7 +29,7 @@ std::string ball(const std::string& surface_i = sphere, const std::string& surfa
            std::to_string(z) + "]}]}";
 }
 
-std::string refusal(const std::string& text)
+std::string refusal_of_model(const std::string& text)
 {
     try {
         dae::Description d = dae::read_model(text, "m.json");
@@ -89,7 +89,7 @@ TEST_CASE("Hertzian spinning friction uses the modulus of the Hertzian normal la
     CHECK(stiffness(hertz, "") > 0);
     CHECK(stiffness(hertz, "") == stiffness(hertz, R"(, "E_star": 2e6)"));
     CHECK(stiffness(hertz, "") > stiffness(hertz, R"(, "E_star": 4e6)"));
-    CHECK_THAT(refusal(ball(sphere, flat, steel, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})")),
+    CHECK_THAT(refusal_of_model(ball(sphere, flat, steel, R"({"mu_s": 0.3, "K_E": 1e4, "spin": "hertz"})")),
                Catch::Contains("(/contacts/0/friction): missing key 'E_star'"));
 }
 
@@ -150,9 +150,9 @@ TEST_CASE("an invalid contact is rejected with its position in the file", "[cont
     };
     for (const Bad& bad : all) {
         INFO(bad.message);
-        CHECK_THAT(refusal(bad.text), Catch::StartsWith(bad.message));
+        CHECK_THAT(refusal_of_model(bad.text), Catch::StartsWith(bad.message));
     }
-    CHECK(refusal(ball()) == "accepted");
+    CHECK(refusal_of_model(ball()) == "accepted");
 
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(models / "bad")) {

@@ -36,7 +36,7 @@ Read read(const std::string& shape)
     return r;
 }
 
-std::string refusal(const std::string& shape)
+std::string refusal_of_shape(const std::string& shape)
 {
     try {
         read(shape);
@@ -132,7 +132,7 @@ TEST_CASE("an invalid surface is rejected with its position and value", "[contac
 {
     const auto says = [](const std::string& shape, const std::string& what) {
         INFO(shape);
-        const std::string said = refusal(shape);
+        const std::string said = refusal_of_shape(shape);
         CHECK(said.starts_with("model.json:1:"));
         CHECK_THAT(said, Catch::EndsWith(what));
     };
@@ -181,7 +181,7 @@ TEST_CASE("an invalid surface is rejected with its position and value", "[contac
 TEST_CASE("an invalid height map is rejected with its position and value", "[contact][surface_types]")
 {
     const auto says = [](const std::string& heights, const std::string& rest, const std::string& what) {
-        CHECK_THAT(refusal("{\"type\": \"height-map\", \"heights\": " + heights + rest + "}"),
+        CHECK_THAT(refusal_of_shape("{\"type\": \"height-map\", \"heights\": " + heights + rest + "}"),
                    Catch::StartsWith("model.json:1:") && Catch::EndsWith(what));
     };
     const std::string row = "[0, 1, 0, 1]", four = "[" + row + ", " + row + ", " + row + ", " + row + "]";
@@ -201,8 +201,8 @@ TEST_CASE("an invalid height map is rejected with its position and value", "[con
 TEST_CASE("an invalid mesh is rejected with its position", "[contact][surface_types]")
 {
     const auto says = [](const std::string& vertices, const std::string& triangles, const std::string& what) {
-        CHECK_THAT(refusal("{\"type\": \"mesh\", \"vertices\": [" + vertices + "], \"triangles\": [" +
-                           triangles + "]}"),
+        CHECK_THAT(refusal_of_shape("{\"type\": \"mesh\", \"vertices\": [" + vertices +
+                                    "], \"triangles\": [" + triangles + "]}"),
                    Catch::StartsWith("model.json:1:") && Catch::EndsWith(what));
     };
     const std::string corners = "[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]";

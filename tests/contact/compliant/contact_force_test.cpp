@@ -14,20 +14,17 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/contact/compliant/slide_roll_spin.hpp"
 #include "tests/support/no_allocation.hpp"
 
 using namespace hilda;
 using namespace hilda::contact;
 using lie::State;
+using tests::slide_roll_spin;
 
 namespace {
 
 constexpr double m = 5, R = 0.2, N = m * 9.81, k = 2e5;
-
-std::shared_ptr<const FrictionModel> friction(const FrictionParameters& p)
-{
-    return friction_law("slide-roll-spin").make(p);
-}
 
 FrictionParameters rubber()
 {
@@ -36,8 +33,8 @@ FrictionParameters rubber()
 
 std::shared_ptr<const NormalLaw> spring() { return std::make_shared<Hooke>(Hooke::with_restitution(k, 0.5)); }
 
-Inertia ball() { return {.m = m, .J_bar = 0.4 * m * R * R * Mat3::Identity()}; }
-Shape sphere(double radius = R) { return {.surface = std::make_shared<Sphere>(radius)}; }
+Inertia ball_inertia() { return {.m = m, .J_bar = 0.4 * m * R * R * Mat3::Identity()}; }
+Shape ball_surface(double radius = R) { return {.surface = std::make_shared<Sphere>(radius)}; }
 Shape floor() { return {.surface = std::make_shared<Plane>()}; }
 
 /// A ball sliding along x with a spin about the vertical; the overlap carries its weight
@@ -63,10 +60,10 @@ struct OneBall {
 
     explicit OneBall(const Motion& start, const FrictionParameters& p = rubber())
     {
-        model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
+        model.add({.name = "ball", .m = m, .J_bar = ball_inertia().J_bar});
         x.body = {start};
-        model.load(std::make_unique<ContactForce>("ball-floor", model, 0, sphere(), dae::ground, floor(),
-                                                  spring(), friction(p)));
+        model.load(std::make_unique<ContactForce>("ball-floor", model, 0, ball_surface(), dae::ground,
+                                                  floor(), spring(), slide_roll_spin(p)));
         dae::start(model, x);
     }
     const ContactForce& contact() const { return dynamic_cast<const ContactForce&>(*model.forces().front()); }
@@ -109,9 +106,9 @@ TEST_CASE("the motion of a ball in a model and in a scene converges to the same 
     const auto apart = [](double h, const Motion& start) {
         const OneBall one(start);
         Scene scene;
-        scene.add(ball(), start);
+        scene.add(ball_inertia(), start);
         scene.add({}, {});
-        scene.add("ball-floor", 0, sphere(), 1, floor(), spring(), friction(rubber()));
+        scene.add("ball-floor", 0, ball_surface(), 1, floor(), spring(), slide_roll_spin(rubber()));
         for (long n = std::lround(0.5 / h); n > 0; --n) scene.step(h);
         return distance(one.after("rA-half-1", 0.5, h).body[0], scene.body[0]);
     };
@@ -181,8 +178,8 @@ TEST_CASE("an impact of two free bodies conserves linear and angular momentum", 
     const double J = 0.4 * 2 * 0.01;
     model.add({.name = "a", .m = 2, .J_bar = J * Mat3::Identity()});
     model.add({.name = "b", .m = 0.5, .J_bar = 0.3 * J * Mat3::Identity()});
-    model.load(std::make_unique<ContactForce>("a-b", model, 0, sphere(0.1), 1, sphere(0.05),
-                                              std::make_shared<Hertz>(1e6, 0.8), friction(rubber())));
+    model.load(std::make_unique<ContactForce>("a-b", model, 0, ball_surface(0.1), 1, ball_surface(0.05),
+                                              std::make_shared<Hertz>(1e6, 0.8), slide_roll_spin(rubber())));
     State x;
     x.body.resize(2);
     x.body[0].rdot = {1, 0.2, 0}, x.body[0].omega_bar = {3, -5, 20};
@@ -273,9 +270,9 @@ TEST_CASE("the contact point is found once per node", "[contact][force]")
     };
     const auto surface = std::make_shared<CountedSphere>();
     dae::Model model;
-    model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
+    model.add({.name = "ball", .m = m, .J_bar = ball_inertia().J_bar});
     model.load(std::make_unique<ContactForce>("ball-floor", model, 0, Shape{.surface = surface}, dae::ground,
-                                              floor(), spring(), friction(rubber())));
+                                              floor(), spring(), slide_roll_spin(rubber())));
     State x;
     x.body = {thrown(2)};
     dae::start(model, x);
@@ -306,8 +303,8 @@ TEST_CASE("the stability limit is estimated before the bodies are in contact", "
     // the stiffness of a Hertzian contact increases with the speed of the impact
     const auto bound = [](double height, double overlap) {
         dae::Model model;
-        model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
-        model.load(std::make_unique<ContactForce>("c", model, 0, sphere(), dae::ground, floor(),
+        model.add({.name = "ball", .m = m, .J_bar = ball_inertia().J_bar});
+        model.load(std::make_unique<ContactForce>("c", model, 0, ball_surface(), dae::ground, floor(),
                                                   std::make_shared<Hertz>(1e8), frictionless()));
         State x;
         x.body.resize(1);
@@ -348,8 +345,8 @@ TEST_CASE("the stability limit is that of symplectic Euler and of leapfrog with 
     // limit.
     const double zeta = 0.7, c = 2 * zeta * std::sqrt(k * m);
     dae::Model model;
-    model.add({.name = "ball", .m = m, .J_bar = ball().J_bar});
-    model.load(std::make_unique<ContactForce>("c", model, 0, sphere(), dae::ground, floor(),
+    model.add({.name = "ball", .m = m, .J_bar = ball_inertia().J_bar});
+    model.load(std::make_unique<ContactForce>("c", model, 0, ball_surface(), dae::ground, floor(),
                                               std::make_shared<Hooke>(k, c), frictionless()));
     State start;
     start.body.resize(1);
@@ -402,8 +399,8 @@ TEST_CASE("the message of a failed detection has the names of the bodies and the
     dae::Model model;
     model.add({.name = "left", .m = 1, .J_bar = Mat3::Identity()});
     model.add({.name = "right", .m = 1, .J_bar = Mat3::Identity()});
-    model.load(
-        std::make_unique<ContactForce>("pair", model, 0, sphere(), 1, sphere(), spring(), frictionless()));
+    model.load(std::make_unique<ContactForce>("pair", model, 0, ball_surface(), 1, ball_surface(), spring(),
+                                              frictionless()));
     State x;
     x.body.resize(2);
     CHECK_THROWS_WITH(dae::start(model, x),
@@ -418,15 +415,16 @@ TEST_CASE("the message of a failed detection has the names of the bodies and the
     CHECK_THROWS_WITH(loads(model, x),
                       Catch::StartsWith("contact 'pair': the centres of two spheres coincide") &&
                           Catch::EndsWith("; bodies 'left', 'right', t = 0.25 s"));
-    CHECK_THROWS_WITH(ContactForce("c", model, 1, sphere(), 1, sphere(), spring(), frictionless()),
-                      Catch::Contains("two different bodies, got 'right' twice"));
+    CHECK_THROWS_WITH(
+        ContactForce("c", model, 1, ball_surface(), 1, ball_surface(), spring(), frictionless()),
+        Catch::Contains("two different bodies, got 'right' twice"));
 }
 
 TEST_CASE("laws that need curvature are rejected if the surfaces have none", "[contact][force]")
 {
     const auto why = [](std::shared_ptr<const NormalLaw> law,
                         std::shared_ptr<const FrictionModel> law_of_friction, Shape shape) {
-        const CompliantContact c("c", std::move(shape), floor(), ball(), {}, std::move(law),
+        const CompliantContact c("c", std::move(shape), floor(), ball_inertia(), {}, std::move(law),
                                  std::move(law_of_friction));
         Motion on;
         on.r.z() = R;
@@ -434,14 +432,14 @@ TEST_CASE("laws that need curvature are rejected if the surfaces have none", "[c
     };
     const Shape foot{.surface = std::make_shared<Foot>(), .position = {0, 0, -R}};
     const std::string curve = "the sum of the curvatures must be positive, got 0";
-    const auto slide = friction({.mu_s = 0.3, .K_E = 1e4});
-    CHECK(why(spring(), friction(rubber()), sphere()).empty());
+    const auto slide = slide_roll_spin({.mu_s = 0.3, .K_E = 1e4});
+    CHECK(why(spring(), slide_roll_spin(rubber()), ball_surface()).empty());
     CHECK(why(spring(), slide, foot).empty());
     CHECK(why(spring(), frictionless(), foot).empty());
     CHECK_THAT(why(std::make_shared<Hertz>(1e6), slide, foot), Catch::Contains(curve));
     for (FrictionParameters p : {rubber(), FrictionParameters{.K_E = 1, .eta_psi = 0.1},
                                  FrictionParameters{.K_E = 1, .E_star = 1e6}})
-        CHECK_THAT(why(spring(), friction(p), foot), Catch::Contains(curve));
+        CHECK_THAT(why(spring(), slide_roll_spin(p), foot), Catch::Contains(curve));
     for (const char* law : {"constant-torque", "epsd"}) {
         CHECK_THAT(why(spring(), friction_law(law).make({.K_E = 1, .mu_r = 0.1}), foot),
                    Catch::Contains(curve));

@@ -12,6 +12,7 @@
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/superquadric.hpp"
 #include "lie/check.hpp"
+#include "tests/contact/compliant/slide_roll_spin.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -24,6 +25,7 @@ using contact::Shape;
 using lie::Mat3;
 using lie::Motion;
 using lie::Vec3;
+using tests::slide_roll_spin;
 
 namespace {
 
@@ -35,11 +37,6 @@ std::string refusal(const std::function<void()>& make)
         return e.what();
     }
     return "";
-}
-
-std::shared_ptr<const contact::FrictionModel> friction(const FrictionParameters& p)
-{
-    return contact::friction_law("slide-roll-spin").make(p);
 }
 
 Shape sphere(double R, bool concave = false) { return {std::make_shared<contact::Sphere>(R, concave)}; }
@@ -56,8 +53,13 @@ Motion at(const Vec3& r)
 
 contact::CompliantContact rolling_ball(const FrictionParameters& p, double N = 5 * 9.8)
 {
-    return {"ball",     sphere(0.2), plane, ball(5, 0.2), {}, std::make_shared<contact::GivenForce>(N),
-            friction(p)};
+    return {"ball",
+            sphere(0.2),
+            plane,
+            ball(5, 0.2),
+            {},
+            std::make_shared<contact::GivenForce>(N),
+            slide_roll_spin(p)};
 }
 
 double bound(const contact::CompliantContact& c)
@@ -76,7 +78,7 @@ double late_speed(double eta_r, double h)
     scene.add(ball(5, 0.2), m);
     scene.add(Inertia{}, {});
     scene.add("ball", 0, sphere(0.2), 1, plane, std::make_shared<contact::GivenForce>(5 * 9.81),
-              friction({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5, .eta_r = eta_r}));
+              slide_roll_spin({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5, .eta_r = eta_r}));
     double late = 0;
     for (int k = 0; k < 2000; ++k) {
         scene.step(h);
@@ -124,7 +126,7 @@ TEST_CASE("a scene rejects a step above the stability limit", "[contact][stabili
     scene.add(ball(5, 0.2), at({0, 0, 0.2}));
     scene.add(Inertia{}, {});
     scene.add("ball-floor", 0, sphere(0.2), 1, plane, std::make_shared<contact::GivenForce>(49),
-              friction({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5}));
+              slide_roll_spin({.mu_s = 0.5, .mu_k = 0.5, .K_E = 1e5}));
     scene.check(1.8e-3);
     CHECK(refusal([&] { scene.check(2e-3); }) ==
           "contact 'ball-floor': the step must not exceed its stability bound of 0.00189354 s, got 0.002");
@@ -172,7 +174,7 @@ TEST_CASE("an invalid initial pose of a contact is rejected", "[contact]")
 {
     const auto start_error = [](const Shape& i, const Shape& j, const Vec3& r, const FrictionParameters& p) {
         const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
-                                          std::make_shared<contact::Hooke>(1e5, 0), friction(p));
+                                          std::make_shared<contact::Hooke>(1e5, 0), slide_roll_spin(p));
         return c.start_error(at(r), Motion());
     };
     const FrictionParameters slides{.K_E = 1}, rolls{.K_E = 1, .eta_r = 0.1};
@@ -200,7 +202,7 @@ TEST_CASE("the initial overlap is compared with the smallest radius of curvature
     const auto start_error = [](const Shape& i, const Shape& j, const Motion& bi, double eta_r = 0) {
         const contact::CompliantContact c("c", i, j, ball(1, 0.1), {},
                                           std::make_shared<contact::Hooke>(1e5, 0),
-                                          friction({.K_E = 1, .eta_r = eta_r}));
+                                          slide_roll_spin({.K_E = 1, .eta_r = eta_r}));
         return c.start_error(bi, Motion());
     };
     const std::string deep = "the surfaces must not overlap by more than ";
@@ -232,7 +234,7 @@ TEST_CASE("a failed search at the start is a NumericalFailure", "[contact]")
         double size() const override { return 1; }
     };
     const contact::CompliantContact c("c", sphere(0.2), {std::make_shared<Lost>()}, ball(1, 0.1), {},
-                                      std::make_shared<contact::Hooke>(1e5, 0), friction({.K_E = 1}));
+                                      std::make_shared<contact::Hooke>(1e5, 0), slide_roll_spin({.K_E = 1}));
     try {
         c.start_error(at({1, 0.2, 0}), Motion());
         FAIL("accepted");
@@ -246,7 +248,8 @@ TEST_CASE("a normal force that is not finite ends the run with the name of the c
 {
     // 2 E* overflows; the damping of a restitution of 1 is 0 times infinity
     const contact::CompliantContact c("c", sphere(0.25), plane, ball(1, 0.1), {},
-                                      std::make_shared<contact::Hertz>(1e308, 1), friction({.K_E = 1}));
+                                      std::make_shared<contact::Hertz>(1e308, 1),
+                                      slide_roll_spin({.K_E = 1}));
     CHECK(c.evaluate(at({0, 0, 0.3}), Motion(), {}).N == 0);
     CHECK_THROWS_MATCHES(
         c.evaluate(at({0, 0, 0.1875}), Motion(), {}), lie::NonFinite,
@@ -255,7 +258,7 @@ TEST_CASE("a normal force that is not finite ends the run with the name of the c
 
 TEST_CASE("a friction law rejects invalid parameters", "[contact][friction]")
 {
-    const auto why = [](const FrictionParameters& p) { return refusal([&] { friction(p); }); };
+    const auto why = [](const FrictionParameters& p) { return refusal([&] { slide_roll_spin(p); }); };
     CHECK(why({.mu_s = 0.2, .mu_k = 0.3, .K_E = 1}) ==
           "friction: mu_s must not be below mu_k, got 0.20000000000000001");
     CHECK(why({.mu_s = 0.2, .mu_k = -0.5, .K_E = 1}) == "friction: mu_k must not be negative, got -0.5");

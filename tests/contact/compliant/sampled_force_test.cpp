@@ -19,7 +19,7 @@ using namespace hilda::contact;
 namespace {
 
 const Vec3 D(2.5, 2.7, 2.3), gravity(0, 0, -9.81);
-constexpr double R = 0.5, m = 1;
+constexpr double R_ball = 0.5, m_ball = 1;
 
 /// The centre of a ball in contact with the bowl of semi-axes D, on a curve around the bottom of the bowl
 Vec3 centre(double t)
@@ -27,7 +27,7 @@ Vec3 centre(double t)
     const double down = 0.35 + 0.15 * std::sin(3 * t), around = 2 * t;
     const Vec3 a = D.cwiseProduct(
         Vec3(std::sin(down) * std::cos(around), std::sin(down) * std::sin(around), -std::cos(down)));
-    return a + R * Ellipsoid(D, true).normal(a);
+    return a + R_ball * Ellipsoid(D, true).normal(a);
 }
 
 /// The contact force on a ball at c with velocity ċ, without friction. With n out of the ball and s = Tᵀċ,
@@ -38,10 +38,10 @@ double normal_force(const Surface& bowl, const Vec3& c, const Vec3& cdot)
 {
     const Vec3 a = bowl.project(c), n = -bowl.normal(a);
     const Eigen::Matrix<double, 3, 2> T = tangent_basis(n);
-    const Eigen::Matrix2d K_i = Eigen::Matrix2d::Identity() / R,
+    const Eigen::Matrix2d K_i = Eigen::Matrix2d::Identity() / R_ball,
                           K_j = T.transpose() * bowl.shape_operator(a) * T;
     const Eigen::Vector2d s = T.transpose() * cdot;
-    return m * (n.dot(gravity) - s.dot(K_i * (K_i + K_j).inverse() * K_j * s));
+    return m_ball * (n.dot(gravity) - s.dot(K_i * (K_i + K_j).inverse() * K_j * s));
 }
 
 struct Difference {
@@ -89,8 +89,8 @@ TEST_CASE("the normal force in a spherical bowl equals the closed form", "[conta
     const Ellipsoid bowl({rho, rho, rho}, true);
     const Vec3 down(std::sin(theta), 0, -std::cos(theta)),
         cdot(3 * std::cos(theta), 0.5, 3 * std::sin(theta));
-    CHECK(normal_force(bowl, (rho - R) * down, cdot) ==
-          Approx(m * (cdot.squaredNorm() / (rho - R) + 9.81 * std::cos(theta))).epsilon(1e-13));
+    CHECK(normal_force(bowl, (rho - R_ball) * down, cdot) ==
+          Approx(m_ball * (cdot.squaredNorm() / (rho - R_ball) + 9.81 * std::cos(theta))).epsilon(1e-13));
 }
 
 TEST_CASE("the contact force on a height map converges with order 2 and has no peaks", "[contact][sampled]")

@@ -87,11 +87,11 @@ std::vector<Pair> pairs()
 
 /// The shapes of a pair at random poses on two bodies. Shape i lies approximately in the direction +z of
 /// shape j, at the distance of the pair ± 20 %.
-struct Scene {
+struct PlacedPair {
     Shape i, j;
     Motion bi, bj;
 
-    Scene(const Pair& pair, Random& random) : i(placed(pair.i, random)), j(placed(pair.j, random))
+    PlacedPair(const Pair& pair, Random& random) : i(placed(pair.i, random)), j(placed(pair.j, random))
     {
         bi.A = random.rotation(), bj.A = random.rotation();
         bj.r = random.vector();
@@ -118,7 +118,7 @@ TEST_CASE("the contact points lie on their surfaces along opposite normals", "[c
     Random random(GENERATE(range(0u, 20u)));
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
-        const Scene s(pair, random);
+        const PlacedPair s(pair, random);
         const ContactPoint t = s.contact_point();
         const Vec3 a_i = s.i.to_surface(s.bi.A.transpose() * (t.C_i - s.bi.r));
         const Vec3 a_j = s.j.to_surface(s.bj.A.transpose() * (t.C_j - s.bj.r));
@@ -149,7 +149,7 @@ TEST_CASE("exchanging the bodies exchanges the points and reverses the normal", 
     Random random(GENERATE(range(0u, 10u)));
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
-        const Scene s(pair, random);
+        const PlacedPair s(pair, random);
         const ContactPoint t = s.contact_point(), e = make_detector(s.j, s.i)->detect(s.bj, s.bi, nullptr);
         CHECK(e.gap == t.gap);
         CHECK(e.n == -t.n);
@@ -165,7 +165,7 @@ TEST_CASE("the contact point moves with a common rigid motion of the bodies", "[
     Random random(GENERATE(range(0u, 10u)));
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
-        const Scene s(pair, random);
+        const PlacedPair s(pair, random);
         const Vec3 r = random.vector();
         const Mat3 A = random.rotation();
         const ContactPoint t = s.contact_point();
@@ -184,7 +184,7 @@ TEST_CASE("detection does not allocate memory", "[contact][detection][allocation
     Random random(3);
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
-        const Scene s(pair, random);
+        const PlacedPair s(pair, random);
         const auto detector = make_detector(s.i, s.j);
         const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
         const PreviousPoints from{s.bi.A.transpose() * (t.C_i - s.bi.r),
@@ -271,7 +271,7 @@ TEST_CASE("Newton's method on the common normal converges quadratically", "[cont
     for (const Pair& pair : pairs()) {
         if (pair.i.surface->size() == 0 || pair.j.surface->size() == 0) continue;
         INFO(pair.name);
-        const Scene s(pair, random);
+        const PlacedPair s(pair, random);
         const ContactPoint t = s.contact_point();
         const CommonNormal newton(s.i, s.j);
         CommonNormal::Pair p = newton.placed(s.bi, s.bj);
@@ -292,7 +292,7 @@ TEST_CASE("the search finds the same contact point with and without an initial g
     Random random(GENERATE(range(0u, 20u)));
     for (const Pair& pair : pairs()) {
         INFO(pair.name);
-        Scene s(pair, random);
+        PlacedPair s(pair, random);
         const auto detector = make_detector(s.i, s.j);
         const ContactPoint t = detector->detect(s.bi, s.bj, nullptr);
         const PreviousPoints from{s.bi.A.transpose() * (t.C_i - s.bi.r),

@@ -6,6 +6,7 @@
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/torus.hpp"
 #include "dae/start.hpp"
+#include "tests/support/gravity.hpp"
 #include "tests/support/watched_march.hpp"
 
 #include <catch2/catch.hpp>
@@ -15,11 +16,11 @@
 using namespace hilda;
 using namespace hilda::contact;
 using lie::State;
+using tests::g;
 using tests::march;
 
 namespace {
 
-constexpr double g = 9.81;
 const char* const schemes[] = {"rA-half-1-momentum", "rA-half-1-kick", "rA-half-1"};
 
 }  // namespace

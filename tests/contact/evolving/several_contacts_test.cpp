@@ -9,6 +9,7 @@
 #include "dae/start.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/gravity.hpp"
 #include "tests/support/watched_march.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,10 +19,9 @@
 using namespace hilda;
 using namespace hilda::contact;
 using lie::State;
+using tests::g;
 
 namespace {
-
-constexpr double g = 9.81;
 
 double energy(const dae::Model& model, const State& x)
 {
@@ -33,8 +33,8 @@ double energy(const dae::Model& model, const State& x)
 }
 
 /// The state after t; on_node is called with every node.
-State run(const dae::Model& model, const State& x, const std::string& scheme, double t, double h,
-          const tests::NodeFunction& on_node)
+State run_unilateral(const dae::Model& model, const State& x, const std::string& scheme, double t, double h,
+                     const tests::NodeFunction& on_node)
 {
     struct NodeObserver final : lie::Observer {
         explicit NodeObserver(const tests::NodeFunction& on_node) : on_node(on_node) {}
@@ -123,12 +123,13 @@ TEST_CASE("balls that touch each other in a bowl lose energy until the end of th
     const double start = energy(pile.model, pile.x);
     double least = start, rise = 0;
     bool touched = false;
-    const State end = run(pile.model, pile.x, "rA-half-1-momentum", 1.5, 1e-3, [&](const State& x) {
-        const double E = energy(pile.model, x);
-        rise = std::max(rise, E - least), least = std::min(least, E);
-        for (const auto& c : pile.model.general_constraints())
-            touched = touched || (c->j != dae::ground && !dae::Model::inactive(*c, x));
-    });
+    const State end =
+        run_unilateral(pile.model, pile.x, "rA-half-1-momentum", 1.5, 1e-3, [&](const State& x) {
+            const double E = energy(pile.model, x);
+            rise = std::max(rise, E - least), least = std::min(least, E);
+            for (const auto& c : pile.model.general_constraints())
+                touched = touched || (c->j != dae::ground && !dae::Model::inactive(*c, x));
+        });
     CHECK(touched);
     CHECK(end.t == Approx(1.5));
     CHECK(rise < 1e-3 * (start - least));
@@ -145,8 +146,8 @@ TEST_CASE("a rod that jams on the floor takes the impact that stops its end and 
     const double start = energy(rod.model, rod.x), jammed = rod.jammed_energy();
     CHECK(rod.x.lambda.norm() < 10 * Rod::m * g);  // the start has no force of Coulomb's law; 1e6 N without
     double most = 0;
-    const State end = run(rod.model, rod.x, scheme, 0.1, h,
-                          [&](const State& x) { most = std::max(most, energy(rod.model, x)); });
+    const State end = run_unilateral(rod.model, rod.x, scheme, 0.1, h,
+                                     [&](const State& x) { most = std::max(most, energy(rod.model, x)); });
     CHECK(most < start * (1 + 1e-9));
     // The spring and damper stop the end within 1 mm, not at once.
     CHECK(energy(rod.model, end) == Approx(jammed).epsilon(1e-2));
@@ -166,7 +167,7 @@ TEST_CASE("a bilateral contact under tension has no implicit friction", "[contac
     x.body[0].r.z() = 0.5;
     x.body[0].rdot.x() = 2;
     dae::start(model, x);
-    const State end = run(model, x, "rA-half-1-momentum", 0.5, 1e-3, [](const State&) {});
+    const State end = run_unilateral(model, x, "rA-half-1-momentum", 0.5, 1e-3, [](const State&) {});
     const auto& c = dynamic_cast<const EvolvingContact&>(*model.general_constraints()[0]);
     CHECK(c.multipliers(model.arguments(c, end), end.lambda).F_N == Approx(-g));
     CHECK(end.body[0].rdot.x() == Approx(2).epsilon(1e-5));
@@ -222,7 +223,7 @@ TEST_CASE("a singular step names the contacts that are active", "[contact][unila
     dae::start(model, x);
     std::string what;
     try {
-        run(model, x, "rA-half-1-momentum", 0.5, 5e-4, [](const State&) {});
+        run_unilateral(model, x, "rA-half-1-momentum", 0.5, 5e-4, [](const State&) {});
     } catch (const lie::SingularMatrix& e) {
         what = e.what();
     }

@@ -10,6 +10,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/gravity.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -21,13 +22,12 @@ using contact::Unilateral;
 using lie::Mat3;
 using lie::State;
 using lie::Vec3;
+using tests::g;
 
 namespace {
 
-constexpr double g = 9.81;
-
 const Shape plane{std::make_shared<contact::Plane>()};
-Shape ball(double R) { return {std::make_shared<contact::Sphere>(R)}; }
+Shape ball_of_radius(double R) { return {std::make_shared<contact::Sphere>(R)}; }
 
 /// A ball of mass m with a contact to the ground
 struct Ball {
@@ -40,7 +40,7 @@ struct Ball {
     {
         model.add({"ball", m, 0.4 * m * R * R * Mat3::Identity()});
         model.constrain("contact",
-                        std::make_unique<EvolvingContact>(0, ball(R), dae::ground, ground, friction,
+                        std::make_unique<EvolvingContact>(0, ball_of_radius(R), dae::ground, ground, friction,
                                                           EvolvingContact::NormalRows::tangent, unilateral));
         x.body.resize(1);
         x.body[0].r = r, x.body[0].rdot = v, x.body[0].omega_bar = omega;
@@ -53,7 +53,7 @@ struct BounceRun {
     std::vector<ContactEvent> events;
 };
 
-BounceRun run(const Ball& ball, const std::string& scheme, double end, double h)
+BounceRun bounce(const Ball& ball, const std::string& scheme, double end, double h)
 {
     contact::UnilateralStep step(ball.model, lie::scheme(scheme), {.tolerance = 1e-13});
     BounceRun out;
@@ -67,10 +67,10 @@ BounceRun run(const Ball& ball, const std::string& scheme, double end, double h)
 TEST_CASE("a ball bounces far from the origin as it does at the origin", "[contact][unilateral]")
 {
     const double R = 0.1, height = 0.5;
-    const BounceRun here = run({R, 2, plane, Vec3(0, 0, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
-                               "rA-half-1-momentum", 2, 0.013),
-                    far = run({R, 2, plane, Vec3(1e4, -3e4, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
-                              "rA-half-1-momentum", 2, 0.013);
+    const BounceRun here = bounce({R, 2, plane, Vec3(0, 0, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
+                                  "rA-half-1-momentum", 2, 0.013),
+                    far = bounce({R, 2, plane, Vec3(1e4, -3e4, R + height), Vec3(0.7, 0.1, 0), {true, 0.8}},
+                                 "rA-half-1-momentum", 2, 0.013);
     REQUIRE(here.events.size() == far.events.size());
     for (size_t k = 0; k < here.events.size(); ++k)
         CHECK(far.events[k].t == Approx(here.events[k].t).epsilon(1e-9));
@@ -84,7 +84,7 @@ TEST_CASE("a ball bounces at the times of the closed form", "[contact][unilatera
         for (const char* scheme : {"rA-half-1-momentum", "rA-half-1-kick", "rA-rattle", "rA-rkmk-4"}) {
             INFO(scheme);
             const Ball b(R, 2, plane, Vec3(0.3, 0, R + height), Vec3(0.7, 0.1, 0), {true, e, impact});
-            const BounceRun r = run(b, scheme, 1.6, 0.013);
+            const BounceRun r = bounce(b, scheme, 1.6, 0.013);
             double t = std::sqrt(2 * height / g), v = g * t;
             REQUIRE(r.events.size() >= 3);
             for (int k = 0; k < 3; ++k) {
@@ -145,10 +145,10 @@ TEST_CASE("a ball leaves a sphere at the angle of the closed form with second or
         CHECK(cosine == Approx(rolling ? 0.5895268 : 0.66771217).epsilon(1e-7));
         std::vector<double> error, of_flight;
         for (const double h : {4e-3, 2e-3, 1e-3}) {
-            const Ball b(r, 1, ball(R), Vec3(0, 0, d), Vec3(v0, 0, 0), {.enabled = true},
+            const Ball b(r, 1, ball_of_radius(R), Vec3(0, 0, d), Vec3(v0, 0, 0), {.enabled = true},
                          rolling ? EvolvingContact::Friction::rolling : EvolvingContact::Friction::none,
                          rolling ? Vec3(0, v0 / r, 0) : Vec3::Zero());
-            const BounceRun out = run(b, "rA-half-1-momentum", 2.4, h);
+            const BounceRun out = bounce(b, "rA-half-1-momentum", 2.4, h);
             REQUIRE(out.events.size() == 1);
             REQUIRE(out.node.back().body[0].r.z() < 0);
             CHECK(out.events[0].type == ContactEvent::Type::lift_off);
@@ -186,7 +186,7 @@ TEST_CASE("a ball with e = 1 in a bowl conserves energy over its impacts (long)"
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     const Ball b(0.5, 1, bowl, Vec3(0.4, 0.9, 0.3), Vec3(0.2, -0.1, 0), {true, 1});
     const double before = lie::energy(b.model, b.x);
-    const BounceRun r = run(b, "rA-half-1-momentum", 5, 5e-3);
+    const BounceRun r = bounce(b, "rA-half-1-momentum", 5, 5e-3);
     CHECK(r.events.size() > 3);
     for (const ContactEvent& e : r.events) CHECK(e.type == ContactEvent::Type::impact);
     CHECK(lie::energy(b.model, r.node.back()) == Approx(before).margin(1e-10));
@@ -198,7 +198,7 @@ TEST_CASE("a ball whose rebounds have ended stays in contact and keeps its tange
     const double R = 0.1;
     for (const double e : {0., 0.5}) {
         const Ball b(R, 1, plane, Vec3(0, 0, R + 0.2), Vec3(0.3, 0, 0), {true, e});
-        const BounceRun r = run(b, "rA-half-1-momentum", 2, 4e-3);
+        const BounceRun r = bounce(b, "rA-half-1-momentum", 2, 4e-3);
         CHECK(r.events.back().type == ContactEvent::Type::closing);
         CHECK((e > 0) == (r.events.size() > 1));
         const State& x = r.node.back();
@@ -221,7 +221,7 @@ TEST_CASE("a ball falls into a groove and rests on both walls", "[contact][unila
         const Mat3 A = lie::exp(Vec3(0, -side * lean, 0));
         model.constrain(side < 0 ? "left" : "right",
                         std::make_unique<EvolvingContact>(
-                            0, ball(R), dae::ground, Shape{plane.surface, Vec3::Zero(), A},
+                            0, ball_of_radius(R), dae::ground, Shape{plane.surface, Vec3::Zero(), A},
                             EvolvingContact::Friction::none, EvolvingContact::NormalRows::tangent,
                             Unilateral{.enabled = true, .restitution = 0.3}));
     }
@@ -250,12 +250,12 @@ TEST_CASE("a ball that falls on a ball on the ground rebounds from both", "[cont
     model.add({"upper", 2, 0.8 * R * R * Mat3::Identity()});
     const auto add = [&](const char* name, int i, int j, const Shape& shape_j) {
         model.constrain(
-            name, std::make_unique<EvolvingContact>(i, ball(R), j, shape_j, EvolvingContact::Friction::none,
-                                                    EvolvingContact::NormalRows::tangent,
-                                                    Unilateral{.enabled = true, .restitution = e}));
+            name, std::make_unique<EvolvingContact>(
+                      i, ball_of_radius(R), j, shape_j, EvolvingContact::Friction::none,
+                      EvolvingContact::NormalRows::tangent, Unilateral{.enabled = true, .restitution = e}));
     };
     add("on the ground", 0, dae::ground, plane);
-    add("on the ball", 1, 0, ball(R));
+    add("on the ball", 1, 0, ball_of_radius(R));
     State x;
     x.body.resize(2);
     x.body[0].r = Vec3(0, 0, R);
@@ -348,11 +348,11 @@ TEST_CASE("contacts with indeterminate forces are named, or switch to their fall
         for (int k = 0; k < 4; ++k) {
             const Mat3 A = lie::exp(Vec3(0, 0, k * M_PI / 2)) * lie::exp(Vec3(0, lean, 0));
             const std::string name = "wall " + std::to_string(k);
-            auto c = std::make_unique<EvolvingContact>(0, ball(R), dae::ground,
+            auto c = std::make_unique<EvolvingContact>(0, ball_of_radius(R), dae::ground,
                                                        Shape{plane.surface, Vec3::Zero(), A});
             if (fallback) {
                 auto force = std::make_unique<contact::ContactForce>(
-                    name, model, 0, ball(R), dae::ground, c->shape_j,
+                    name, model, 0, ball_of_radius(R), dae::ground, c->shape_j,
                     std::make_shared<contact::Hooke>(contact::Hooke::with_restitution(1e5, 0.2)),
                     contact::frictionless());
                 c->fallback = true;
@@ -424,8 +424,8 @@ TEST_CASE("an impact at a node is resolved like any other impact", "[contact][un
         model.gravity = Vec3(0, 0, -up);
         model.add({"ball", 1, 0.004 * Mat3::Identity()});
         model.constrain("floor", std::make_unique<EvolvingContact>(
-                                     0, ball(R), dae::ground, plane, EvolvingContact::Friction::none,
-                                     EvolvingContact::NormalRows::tangent,
+                                     0, ball_of_radius(R), dae::ground, plane,
+                                     EvolvingContact::Friction::none, EvolvingContact::NormalRows::tangent,
                                      Unilateral{.enabled = true, .restitution = 1}));
         State x;
         x.body.resize(1);
@@ -467,7 +467,7 @@ TEST_CASE("a contact that separates or approaches at the start starts inactive",
     for (const double v : {2., -2.}) {
         const Ball b(R, 1, plane, Vec3(0, 0, R), Vec3(0, 0, v), {true, 1});
         CHECK(b.x.discrete_state[0] == EvolvingContact::inactive);
-        const BounceRun r = run(b, "rA-half-1-momentum", 0.1, 1e-3);
+        const BounceRun r = bounce(b, "rA-half-1-momentum", 0.1, 1e-3);
         CHECK(r.node.back().body[0].r.z() == Approx(R + 0.2 - 0.5 * g * 0.01).epsilon(1e-10));
         CHECK(r.events.size() == (v < 0 ? 1 : 0));
     }
@@ -479,9 +479,9 @@ TEST_CASE("a step with unilateral contacts that fails does not change the state"
     const Shape bowl{std::make_shared<contact::Ellipsoid>(Vec3(4, 3, 2), true)};
     dae::Model model;
     model.add({"ball", 1, 0.1 * Mat3::Identity()});
-    auto c =
-        std::make_unique<EvolvingContact>(0, ball(0.5), dae::ground, bowl, EvolvingContact::Friction::none,
-                                          EvolvingContact::NormalRows::tangent, Unilateral{.enabled = true});
+    auto c = std::make_unique<EvolvingContact>(
+        0, ball_of_radius(0.5), dae::ground, bowl, EvolvingContact::Friction::none,
+        EvolvingContact::NormalRows::tangent, Unilateral{.enabled = true});
     model.constrain("contact", std::move(c));
     State x;
     x.body.resize(1);

@@ -55,7 +55,7 @@ struct Waves {
 HeightMap waves(int cells) { return HeightMap::sampled(Waves::f, {-2, -1}, {2, 3}, cells + 1, cells + 1); }
 
 /// The largest errors of f, ∇f and ∇²f at the same points of all cells, up to the edge
-Vec3 errors(int cells)
+Vec3 height_map_errors(int cells)
 {
     const HeightMap map = waves(cells);
     Vec3 worst = Vec3::Zero();
@@ -96,7 +96,7 @@ TEST_CASE("a height map is exact for a cubic", "[contact][height_map]")
 
 TEST_CASE("f, gradient and Hessian of a height map converge with orders 4, 3 and 2", "[contact][height_map]")
 {
-    const Vec3 coarse = errors(16), fine = errors(32);
+    const Vec3 coarse = height_map_errors(16), fine = height_map_errors(32);
     const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
     INFO("errors " << coarse.transpose() << " and " << fine.transpose() << ", orders " << order.transpose());
     CHECK(order[0] == Approx(4).margin(0.15));

@@ -90,7 +90,7 @@ std::string model(const std::string& surface)
            surface + R"(}, "surface_j": {"type": "plane"}, "normal": {"type": "hooke", "stiffness": 1e4}}]})";
 }
 
-std::string refusal(const std::string& path)
+std::string refusal_of_file(const std::string& path)
 {
     try {
         dae::load_model(path);
@@ -232,7 +232,7 @@ TEST_CASE("a mesh file that cannot be used is refused with its place in the mode
 {
     const Folder folder;
     const auto says = [&](const std::string& surface) {
-        const std::string message = refusal(folder.write("m.json", model(surface)));
+        const std::string message = refusal_of_file(folder.write("m.json", model(surface)));
         const std::string place = (folder.path / "m.json").string() + ":3:";
         INFO(message);
         CHECK(message.starts_with(place));

@@ -36,7 +36,7 @@ TriangleMesh ellipsoid_mesh(const Vec3& D, int levels)
 
 /// The root mean square errors of position, normal and shape operator of a mesh whose vertices lie on an
 /// ellipsoid. The vertices are displaced along the ellipsoid by up to `jitter` edge lengths.
-Vec3 errors(const Vec3& D, int levels, double jitter)
+Vec3 mesh_errors(const Vec3& D, int levels, double jitter)
 {
     Random random(1);
     const double edge = 1.2 * std::pow(0.5, levels);
@@ -54,7 +54,7 @@ Vec3 errors(const Vec3& D, int levels, double jitter)
     return (squares / points).cwiseSqrt();
 }
 
-std::string refusal(const Triangles& mesh)
+std::string refusal_of_mesh(const Triangles& mesh)
 {
     try {
         MeshSurface(TriangleMesh(mesh.vertices, mesh.triangles));
@@ -75,7 +75,7 @@ Triangles tetrahedron()
 TEST_CASE("position, normal and curvature of a mesh surface converge with orders 4, 3 and 2",
           "[contact][mesh]")
 {
-    const Vec3 coarse = errors({1, 0.9, 1.1}, 2, 0.1), fine = errors({1, 0.9, 1.1}, 3, 0.1);
+    const Vec3 coarse = mesh_errors({1, 0.9, 1.1}, 2, 0.1), fine = mesh_errors({1, 0.9, 1.1}, 3, 0.1);
     const Vec3 order = (coarse.cwiseQuotient(fine).array().log() / std::log(2)).matrix();
     INFO("errors " << coarse.transpose() << " and " << fine.transpose() << ", orders " << order.transpose());
     CHECK(order[0] == Approx(4).margin(0.2));
@@ -245,7 +245,7 @@ TEST_CASE("the evaluation of a mesh surface does not allocate memory", "[contact
 TEST_CASE("a mesh that is not a closed oriented manifold is rejected with the reason", "[contact][mesh]")
 {
     const auto says = [](const Triangles& mesh, const std::string& what) {
-        CHECK(refusal(mesh) == "contact::TriangleMesh: " + what);
+        CHECK(refusal_of_mesh(mesh) == "contact::TriangleMesh: " + what);
     };
     Triangles open = tetrahedron();
     open.triangles.pop_back();
@@ -285,18 +285,18 @@ TEST_CASE("a mesh that is not a closed oriented manifold is rejected with the re
 
 TEST_CASE("a mesh that is too coarse for a smooth surface is rejected with the vertex", "[contact][mesh]")
 {
-    CHECK(refusal(tetrahedron()) ==
+    CHECK(refusal_of_mesh(tetrahedron()) ==
           "contact::MeshSurface: the mesh is too coarse for a smooth surface: the 4 vertices near vertex 0 "
           "do not "
           "determine a "
           "cubic");
-    CHECK_THAT(refusal(icosphere(1)),
+    CHECK_THAT(refusal_of_mesh(icosphere(1)),
                Catch::StartsWith("contact::MeshSurface: the mesh is too coarse for a smooth surface: "
                                  "the normals of the neighbouring vertices 12 and 6 differ by"));
-    CHECK(refusal(icosphere(2)) == "accepted");
+    CHECK(refusal_of_mesh(icosphere(2)) == "accepted");
     Triangles with_more = icosphere(2);
     with_more.vertices.emplace_back(7, 7, 7);
-    CHECK(refusal(with_more) == "accepted");
+    CHECK(refusal_of_mesh(with_more) == "accepted");
     CHECK(MeshSurface(TriangleMesh(with_more.vertices, with_more.triangles)).size() < 1.01);
 }
 

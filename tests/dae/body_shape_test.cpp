@@ -78,17 +78,17 @@ Moments integrated(const dae::BodyShape& s, int n)
     return m;
 }
 
-dae::Description body(const std::string& keys)
+dae::Description model_of_body(const std::string& keys)
 {
     return dae::read_model(
         R"({"hilda_model": 1, "name": "m", "bodies": [{"name": "b", )" + keys + R"(, "r": [0, 0, 0]}]})",
         "m.json");
 }
 
-std::string refusal(const std::string& keys)
+std::string refusal_of_body(const std::string& keys)
 {
     try {
-        body(keys);
+        model_of_body(keys);
         return "";
     } catch (const lie::InvalidInput& e) {
         return e.what();
@@ -120,14 +120,15 @@ TEST_CASE("volume, centre of mass and inertia of a shape are the integrals over 
 
 TEST_CASE("a body of a shape has the mass of its density and the inertia of its mass", "[dae][shape]")
 {
-    const dae::Description d = body(R"("density": 1000, "shape": {"box": [0.2, 0.1, 0.3]})");
+    const dae::Description d = model_of_body(R"("density": 1000, "shape": {"box": [0.2, 0.1, 0.3]})");
     const dae::Body& b = d.model->all_bodies()[0];
     CHECK(b.m == Approx(6).epsilon(1e-15));
     CHECK((b.J_bar.diagonal() - Vec3(0.05, 0.065, 0.025)).norm() < 1e-16);
     REQUIRE(b.shape);
     CHECK(b.shape->type == "box");
     CHECK(b.shape->dimensions == std::vector<double>{0.2, 0.1, 0.3});
-    const dae::Body same = body(R"("mass": 6, "shape": {"box": [0.2, 0.1, 0.3]})").model->all_bodies()[0];
+    const dae::Body same =
+        model_of_body(R"("mass": 6, "shape": {"box": [0.2, 0.1, 0.3]})").model->all_bodies()[0];
     CHECK((same.J_bar - b.J_bar).norm() < 1e-16);
 
     // The canonical form has explicit mass and inertia, and is read as the same body.
@@ -138,44 +139,48 @@ TEST_CASE("a body of a shape has the mass of its density and the inertia of its 
     CHECK(again.model->all_bodies()[0].J_bar == b.J_bar);
 
     // With an explicit inertia the shape is for pictures only.
-    const dae::Description drawn =
-        body(R"("mass": 2, "inertia": [1, 1, 1], "shape": {"cylinder": [0.1, "4/10"], "axis": "y"})");
+    const dae::Description drawn = model_of_body(
+        R"("mass": 2, "inertia": [1, 1, 1], "shape": {"cylinder": [0.1, "4/10"], "axis": "y"})");
     CHECK(drawn.model->all_bodies()[0].J_bar == Mat3::Identity());
     CHECK(drawn.model->all_bodies()[0].shape->axis == 1);
     CHECK(drawn.model->all_bodies()[0].shape->dimensions[1] == 0.4);
-    CHECK_FALSE(body(R"("mass": 2, "inertia": [1, 1, 1])").model->all_bodies()[0].shape);
+    CHECK_FALSE(model_of_body(R"("mass": 2, "inertia": [1, 1, 1])").model->all_bodies()[0].shape);
 }
 
 TEST_CASE("wrong shapes and densities are refused", "[dae][shape]")
 {
     const std::string ball = R"("shape": {"sphere": 0.1})";
-    CHECK(refusal(R"("density": 1, "mass": 1, )" + ball) ==
+    CHECK(refusal_of_body(R"("density": 1, "mass": 1, )" + ball) ==
           "m.json:1:69 (/bodies/0/density): give one of mass and density, not both");
-    CHECK_THAT(refusal(R"("density": 1, "inertia": [1, 1, 1], )" + ball),
+    CHECK_THAT(refusal_of_body(R"("density": 1, "inertia": [1, 1, 1], )" + ball),
                Catch::Contains("give one of inertia and density, not both"));
-    CHECK_THAT(refusal(R"("density": 1)"), Catch::Contains("(/bodies/0/density): density needs a shape"));
-    CHECK_THAT(refusal(R"("density": 0, )" + ball), Catch::Contains("density must be positive, got 0"));
-    CHECK_THAT(refusal(R"("density": 1e308, "shape": {"sphere": 100})"),
+    CHECK_THAT(refusal_of_body(R"("density": 1)"),
+               Catch::Contains("(/bodies/0/density): density needs a shape"));
+    CHECK_THAT(refusal_of_body(R"("density": 0, )" + ball),
+               Catch::Contains("density must be positive, got 0"));
+    CHECK_THAT(refusal_of_body(R"("density": 1e308, "shape": {"sphere": 100})"),
                Catch::Contains("density times volume, must be positive and finite, got inf"));
-    CHECK_THAT(refusal(R"("density": 1e-300, "shape": {"sphere": 1e-9})"), Catch::Contains("finite, got 0"));
-    CHECK_THAT(refusal(R"("mass": 1)"), Catch::Contains("missing key 'inertia'"));
-    CHECK_THAT(refusal(ball), Catch::Contains("missing key 'mass'"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": "box")"), Catch::Contains("must be an object, got \"box\""));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {})"),
+    CHECK_THAT(refusal_of_body(R"("density": 1e-300, "shape": {"sphere": 1e-9})"),
+               Catch::Contains("finite, got 0"));
+    CHECK_THAT(refusal_of_body(R"("mass": 1)"), Catch::Contains("missing key 'inertia'"));
+    CHECK_THAT(refusal_of_body(ball), Catch::Contains("missing key 'mass'"));
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": "box")"),
+               Catch::Contains("must be an object, got \"box\""));
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {})"),
                Catch::Contains("(/bodies/0/shape): a shape must have one of the keys box, sphere, ellipsoid, "
                                "cylinder and cone"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"cilinder": [1, 2]})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"cilinder": [1, 2]})"),
                Catch::Contains("did you mean 'cylinder'?"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"box": [1, 2, 3], "cone": [1, 2]})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"box": [1, 2, 3], "cone": [1, 2]})"),
                Catch::Contains("(/bodies/0/shape/cone): give one of box and cone, not both"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"box": [1, 2]})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"box": [1, 2]})"),
                Catch::Contains("box must be a list of 3 numbers"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"box": [1, 0, 3]})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"box": [1, 0, 3]})"),
                Catch::Contains("box must have positive dimensions, got 0"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"sphere": [1]})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"sphere": [1]})"),
                Catch::Contains("sphere must be a number, got [1]"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"sphere": 1, "axis": "x"})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"sphere": 1, "axis": "x"})"),
                Catch::Contains("axis is for a cylinder or a cone, got a sphere"));
-    CHECK_THAT(refusal(R"("mass": 1, "shape": {"cone": [1, 2], "axis": "w"})"),
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"cone": [1, 2], "axis": "w"})"),
                Catch::Contains("unknown axis \"w\""));
 }

@@ -19,7 +19,7 @@ std::string model(const std::string& contacts)
  "forces": [{"type": "torque", "body": "bob", "frame": "body", "components": [0, 0, 1]}]})";
 }
 
-std::string error_message(const std::string& text)
+std::string contact_error(const std::string& text)
 {
     try {
         dae::Description d = dae::read_model(text, "m.json");
@@ -92,21 +92,21 @@ TEST_CASE("an invalid contact is rejected with its location", "[dae][model_file]
     };
     for (const InvalidContact& bad : all) {
         INFO(bad.contacts);
-        CHECK_THAT(error_message(model(bad.contacts)), Catch::StartsWith(head + bad.message));
+        CHECK_THAT(contact_error(model(bad.contacts)), Catch::StartsWith(head + bad.message));
     }
 
     // errors that are detected at the start only
     std::string together = model("[" + pair + R"(, "most": 1, "name": "brush"}])");
     together.replace(together.find("[3, 4, 0]"), 9, "[3, 0, 0]");
-    CHECK(error_message(together) ==
+    CHECK(contact_error(together) ==
           "m.json:1:46 (/contacts/0): bristle 'brush': the bodies must be apart at the start");
 }
 
 TEST_CASE("without a registered reader contacts are rejected", "[dae][model_file][contacts]")
 {
     CHECK(dae::contact_reader() == nullptr);
-    CHECK(error_message(model("[]")) == "");
-    CHECK(error_message(model("[{}, {}]")) ==
+    CHECK(contact_error(model("[]")) == "");
+    CHECK(contact_error(model("[{}, {}]")) ==
           "m.json:1:45 (/contacts): this program is built without contacts; the list must be empty, got 2");
-    CHECK_THAT(error_message(model("{}")), Catch::Contains("contacts must be a list"));
+    CHECK_THAT(contact_error(model("{}")), Catch::Contains("contacts must be a list"));
 }

@@ -7,6 +7,7 @@
 #include "dae/forces/limits.hpp"
 #include "dae/joints.hpp"
 #include "dae/model.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/finite_difference.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -15,14 +16,13 @@
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using tests::Random;
 
 namespace {
 
 using Vec12 = Eigen::Matrix<double, 12, 1>;
-constexpr double pi = std::numbers::pi;
-const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
-
+using std::numbers::pi;
 struct Coupling {
     std::string name;
     std::unique_ptr<Constraint> constraint;

@@ -9,17 +9,17 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/bristle.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using tests::Bristle;
 
 namespace {
-
-const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Z = Vec3::UnitZ();
 
 struct TwoBodies {
     Model model;

@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include <functional>
+#include <numbers>
 
 using namespace hilda;
 using namespace hilda::dae;
@@ -18,10 +19,10 @@ using tests::Random;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// A joint frame fixed in a body: its point, and its axis as the third column of R
-struct Frame {
+struct JointFrame {
     Vec3 s_bar;
     Mat3 R;
     Vec3 axis() const { return 3 * R.col(2); }  // axes may have any length
@@ -38,7 +39,7 @@ Mat3 about(int axis, double angle) { return lie::exp(angle * Vec3::Unit(axis)); 
 struct Joint {
     std::string name;
     int freedom;
-    std::function<Blocks(int, const Frame&, int, const Frame&, const State&)> make;
+    std::function<Blocks(int, const JointFrame&, int, const JointFrame&, const State&)> make;
     std::function<Relative(Random&)> allowed;  ///< a random relative pose that the joint allows
     std::vector<int> forbidden;  ///< constrained directions: 0 to 2 along, 3 to 5 about the axes of body i
 };
@@ -51,7 +52,7 @@ std::vector<Joint> joints()
     std::vector<Joint> all;
     all.push_back({"spherical",
                    3,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
                        return spherical(i, a.s_bar, j, b.s_bar);
                    },
                    [](Random& random) {
@@ -60,7 +61,7 @@ std::vector<Joint> joints()
                    {0, 1, 2}});
     all.push_back({"revolute",
                    1,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
                        return revolute(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
                    [=](Random& random) {
@@ -69,7 +70,7 @@ std::vector<Joint> joints()
                    {0, 1, 2, 3, 4}});
     all.push_back({"cylindrical",
                    2,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
                        return cylindrical(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
                    [=](Random& random) {
@@ -78,7 +79,7 @@ std::vector<Joint> joints()
                    {0, 1, 3, 4}});
     all.push_back({"translational",
                    1,
-                   [](int i, const Frame& a, int j, const Frame& b, const State& x) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State& x) {
                        return translational(i, a.s_bar, a.axis(), j, b.s_bar, b.axis(), x);
                    },
                    [](Random& random) {
@@ -88,7 +89,7 @@ std::vector<Joint> joints()
     all.push_back(
         {"universal",
          2,
-         [](int i, const Frame& a, int j, const Frame& b, const State&) {
+         [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
              return universal(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
          },
          [=](Random& random) {
@@ -97,7 +98,7 @@ std::vector<Joint> joints()
          {0, 1, 2}});
     all.push_back({"revolute_cylindrical",
                    3,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
                        return revolute_cylindrical(i, a.s_bar, a.axis(), j, b.s_bar, b.axis());
                    },
                    [=](Random& random) {
@@ -105,16 +106,17 @@ std::vector<Joint> joints()
                        return Relative{random.number() * Q.col(2), Q};
                    },
                    {2}});  // along the revolute axis, which is perpendicular to the cylindrical axis
-    all.push_back({"fixed",
-                   0,
-                   [](int i, const Frame&, int j, const Frame&, const State& x) { return fixed(i, j, x); },
-                   [](Random&) {
-                       return Relative{Vec3(0.3, -0.2, 0.5), about(0, 1.0) * about(1, 2.0)};
-                   },
-                   {0, 1, 2, 3, 4, 5}});
+    all.push_back(
+        {"fixed",
+         0,
+         [](int i, const JointFrame&, int j, const JointFrame&, const State& x) { return fixed(i, j, x); },
+         [](Random&) {
+             return Relative{Vec3(0.3, -0.2, 0.5), about(0, 1.0) * about(1, 2.0)};
+         },
+         {0, 1, 2, 3, 4, 5}});
     all.push_back({"distance",
                    5,
-                   [](int i, const Frame& a, int j, const Frame& b, const State&) {
+                   [](int i, const JointFrame& a, int j, const JointFrame& b, const State&) {
                        return distance(i, a.s_bar, j, b.s_bar, 1.7);
                    },
                    [](Random& random) {
@@ -125,7 +127,7 @@ std::vector<Joint> joints()
 }
 
 /// Moves body j so that its joint frame has the relative pose q to that of body i.
-void place(const Motion& bi, const Frame& a, Motion& bj, const Frame& b, const Relative& q)
+void place(const Motion& bi, const JointFrame& a, Motion& bj, const JointFrame& b, const Relative& q)
 {
     const Mat3 frame_i = bi.A * a.R;
     bj.A = frame_i * q.Q * b.R.transpose();
@@ -193,7 +195,7 @@ TEST_CASE("a joint has as many independent rows as it removes degrees of freedom
     Random random(GENERATE(range(1u, 6u)));
     for (const Joint& joint : joints()) {
         INFO(joint.name);
-        const Frame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
+        const JointFrame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
         Pair pair(0, 1);
         pair.bi = random.motion();
         place(pair.bi, a, pair.bj, b, joint.allowed(random));
@@ -218,7 +220,7 @@ TEST_CASE("a joint is satisfied by every allowed motion and violated by constrai
     const int i = GENERATE(0, ground);
     for (const Joint& joint : joints()) {
         INFO(joint.name);
-        const Frame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
+        const JointFrame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
         Pair pair(i, 1);
         if (i != ground) pair.bi = random.motion();
         place(pair.bi, a, pair.bj, b, joint.allowed(random));
@@ -242,7 +244,7 @@ TEST_CASE("a joint is satisfied by every allowed motion and violated by constrai
         }
     }
     // The constrained direction of these two joints depends on the pose.
-    const Frame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
+    const JointFrame a{random.vector(), random.rotation()}, b{random.vector(), random.rotation()};
     Motion bi = random.motion(), bj;
     const Mat3 Q = about(2, 1.0) * about(0, pi / 2);
     const Blocks cardan = universal(0, a.s_bar, a.axis(), 1, b.s_bar, b.axis());

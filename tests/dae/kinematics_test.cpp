@@ -15,13 +15,14 @@
 
 #include <fstream>
 #include <functional>
+#include <numbers>
 
 using namespace hilda;
 using namespace hilda::dae;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// The numbers of a CSV file without its header line
 std::vector<std::vector<double>> table(const std::string& file)
@@ -110,7 +111,7 @@ Deviation deviation(const Model& model, const std::vector<State>& run,
     return result;
 }
 
-void check(const Deviation& d)
+void check_deviation(const Deviation& d)
 {
     INFO("r " << d.r << ", A " << d.A << ", rdot " << d.rdot << ", omega " << d.omega_bar << ", rddot "
               << d.rddot << ", omegadot " << d.omegadot_bar << ", F " << d.F << ", T " << d.T);
@@ -175,7 +176,7 @@ TEST_CASE("kinematic analysis reproduces the reference over whole revolutions",
     mechanism.build(model, x);
     dae::start(model, x);
     const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
-    check(deviation(model, run.row, references(mechanism.name + ".csv")));
+    check_deviation(deviation(model, run.row, references(mechanism.name + ".csv")));
     for (const State& y : run.row) CHECK(model.largest_residual(y).value < 1e-13);
 }
 
@@ -188,7 +189,7 @@ TEST_CASE("the slider-crank of joints has the motion of the slider-crank of bloc
     REQUIRE(report.rank == 18);
     REQUIRE(report.dropped.empty());
     const lie::Trajectory run = Kinematics(model).run(x, 0.1, 30);
-    check(deviation(model, run.row, references("slider_crank.csv")));
+    check_deviation(deviation(model, run.row, references("slider_crank.csv")));
 }
 
 TEST_CASE("projected initial data give the same motion through every exchange of the driver",
@@ -208,7 +209,7 @@ TEST_CASE("projected initial data give the same motion through every exchange of
     }
     dae::start(model, x, {.fix_initial = true});
     const lie::Trajectory run = Kinematics(model).run(x, 0.1, 20);
-    check(deviation(model, run.row, references(mechanism.name + ".csv")));
+    check_deviation(deviation(model, run.row, references(mechanism.name + ".csv")));
 }
 
 TEST_CASE("the torque of a driver is its power divided by its angular velocity", "[dae][kinematics]")

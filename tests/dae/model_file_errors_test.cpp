@@ -67,7 +67,7 @@ std::string error_message(const std::string& text, const std::vector<std::string
     }
 }
 
-void check(const InvalidModel& bad, const std::string& message)
+void check_message(const InvalidModel& bad, const std::string& message)
 {
     INFO(bad.find << " -> " << bad.replace.substr(0, 200));
     INFO(message);
@@ -320,7 +320,7 @@ TEST_CASE("an invalid model file is rejected with its location, the error and th
     for (const auto& [name, table] : tables) {
         CAPTURE(name);
         for (const InvalidModel& bad : *table) {
-            check(bad, error_message(edited(bad)));
+            check_message(bad, error_message(edited(bad)));
             ++count;
         }
     }
@@ -424,7 +424,7 @@ TEST_CASE("an invalid --set is quoted in the message", "[dae][model_file]")
     };
     // clang-format on
     for (const BadSet& bad : sets)
-        check({"", bad.set, bad.pointer, bad.piece}, error_message(valid_model, {bad.set}));
+        check_message({"", bad.set, bad.pointer, bad.piece}, error_message(valid_model, {bad.set}));
 }
 
 TEST_CASE("a mutated model file is read, rejected, or fails numerically", "[dae][model_file]")

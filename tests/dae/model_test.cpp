@@ -11,12 +11,14 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using Catch::Contains;
 using tests::Random;
 
@@ -28,8 +30,6 @@ Body body(const std::string& name, double m = 1, const Mat3& J_bar = Mat3::Ident
 }
 
 Mat3 diagonal(double a, double b, double c) { return Vec3(a, b, c).asDiagonal(); }
-
-const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
 }  // namespace
 

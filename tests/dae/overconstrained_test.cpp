@@ -9,6 +9,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -16,11 +17,10 @@
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using Catch::Contains;
 
 namespace {
-
-const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
 /// Angle between the sides a and b of a triangle with the third side c
 double corner(double a, double b, double c) { return std::acos((a * a + b * b - c * c) / (2 * a * b)); }
@@ -109,7 +109,7 @@ void bricard(Model& model, State& x)
     model.gravity = {0, -9.81, 0};
 }
 
-State last(const Model& model, const State& x, double t_end, double h)
+State last_of_half_2(const Model& model, const State& x, double t_end, double h)
 {
     const auto scheme = lie::scheme("rA-half-2").make(model, {.tolerance = 1e-12});
     return lie::march(x, *scheme, lie::TimeGrid::over(t_end, h, t_end)).row.back();
@@ -173,8 +173,8 @@ TEST_CASE("an overconstrained four-bar has the motion of the one without redunda
     CHECK((x.body[1].rddot - y.body[1].rddot).norm() < 1e-12);
 
     const State start = x;
-    x = last(redundant, x, 1, 1e-3);
-    y = last(lean, y, 1, 1e-3);
+    x = last_of_half_2(redundant, x, 1, 1e-3);
+    y = last_of_half_2(lean, y, 1, 1e-3);
     INFO("after 1 s they differ by " << distance_between(x, y));
     CHECK(distance_between(x, start) > 0.5);
     CHECK(distance_between(x, y) < 1e-8);

@@ -11,11 +11,11 @@ using namespace hilda;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A pendulum whose numbers are expressions, in three lines; `parameters` follows the name
-std::string pendulum(const std::string& parameters, const std::string& mass = R"("m")",
-                     const std::string& forces = "")
+std::string pendulum_with(const std::string& parameters, const std::string& mass = R"("m")",
+                          const std::string& forces = "")
 {
     return R"({"hilda_model": 1, "name": "p", "end": "10*T",
  )" + parameters +
@@ -36,7 +36,7 @@ dae::Description read(const std::string& text, const std::vector<std::string>& s
 }
 
 /// Message of reading the pendulum with these parameters
-std::string refusal(const std::string& text, const std::vector<std::string>& set = {})
+std::string refusal_of_model(const std::string& text, const std::vector<std::string>& set = {})
 {
     try {
         read(text, set);
@@ -51,7 +51,7 @@ std::string refusal(const std::string& text, const std::vector<std::string>& set
 TEST_CASE("parameters are evaluated in any order, and every number of a model can be an expression",
           "[dae][parameters]")
 {
-    const dae::Description d = read(pendulum(length));
+    const dae::Description d = read(pendulum_with(length));
     const dae::Body& bar = d.model->all_bodies()[0];
     CHECK(bar.m == 6);
     CHECK(bar.J_bar(0, 0) == 6 * 4. / 12);
@@ -80,7 +80,7 @@ TEST_CASE("the canonical form has the values of the parameters and is read as th
 {
     const std::string forces = R"({"type": "torque", "body": "bar", "frame": "body",
         "components": [0, 0, "-m*l*sin(2*t/l) + 2e-3"]})";
-    const dae::Description d = read(pendulum(length, R"("m")", forces));
+    const dae::Description d = read(pendulum_with(length, R"("m")", forces));
     CHECK_THAT(d.text, !Catch::Contains("parameters") && !Catch::Contains("l/2"));
     CHECK_THAT(d.text, Catch::Contains("-(6)*(2)*sin(2*t/(2)) + 2e-3"));
     const dae::Description again = dae::read_model(d.text, "again.json");
@@ -91,16 +91,16 @@ TEST_CASE("the canonical form has the values of the parameters and is read as th
 
 TEST_CASE("the option --set changes a parameter, and a number to an expression", "[dae][parameters]")
 {
-    const dae::Description d = read(pendulum(length), {"/parameters/l=3", "/bodies/0/mass=\"2*m\""});
+    const dae::Description d = read(pendulum_with(length), {"/parameters/l=3", "/bodies/0/mass=\"2*m\""});
     CHECK(d.model->all_bodies()[0].m == 18);
     CHECK(d.x.body[0].r.y() == 1.5);
-    CHECK(read(pendulum(length), {"/bodies/0/mass=2*m"}).model->all_bodies()[0].m == 12);
-    CHECK(read(pendulum(length), {"/parameters/l=\"g/9.81\""}).model->all_bodies()[0].m == 3);
-    CHECK(refusal(pendulum(length), {"/parameters/ll=3"}) ==
+    CHECK(read(pendulum_with(length), {"/bodies/0/mass=2*m"}).model->all_bodies()[0].m == 12);
+    CHECK(read(pendulum_with(length), {"/parameters/l=\"g/9.81\""}).model->all_bodies()[0].m == 3);
+    CHECK(refusal_of_model(pendulum_with(length), {"/parameters/ll=3"}) ==
           "p.json:2:16 (/parameters/ll): the model does not use a parameter \"ll\"; did you mean 'l'? (from "
           "--set "
           "\"/parameters/ll=3\")");
-    CHECK_THAT(refusal(pendulum(length), {"/parameters/l=0"}),
+    CHECK_THAT(refusal_of_model(pendulum_with(length), {"/parameters/l=0"}),
                Catch::Contains("(/end): end must be positive, got 0"));
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("drivers and force laws contain parameters besides their variables", "
 {
     const std::string spring = R"({"name": "s", "type": "spring-damper", "body_i": "ground", "body_j": "bar",
         "s_bar_p_i": [0, 0, 3], "stiffness": "g", "free_length": "l", "force": "-g*l + m*ldot"})";
-    const dae::Description d = read(pendulum(length, R"("m")", spring));
+    const dae::Description d = read(pendulum_with(length, R"("m")", spring));
     // l is the length of the spring in its force, and the parameter elsewhere
     CHECK_THAT(d.text, Catch::Contains("\"-(9.81)*l + (6)*ldot\"") && Catch::Contains("\"free_length\": 2"));
     REQUIRE(d.warnings.size() == 1);
@@ -122,14 +122,14 @@ TEST_CASE("a parameter of negative value keeps its sign in powers and products",
     const std::string torque =
         R"({"type": "torque", "body": "bar", "frame": "body", "components": [0, 0, "a^2 - a*t"]})";
     const dae::Description d =
-        read(pendulum(R"("parameters": {"m": 1, "T": 1, "l": 1, "a": -3},)", R"("m")", torque));
+        read(pendulum_with(R"("parameters": {"m": 1, "T": 1, "l": 1, "a": -3},)", R"("m")", torque));
     CHECK_THAT(d.text, Catch::Contains("(-3)^2 - (-3)*t"));
 }
 
 TEST_CASE("a parameter that nothing uses gives a warning", "[dae][parameters]")
 {
-    const dae::Description d = read(
-        pendulum(R"("parameters": {"note": "lengths", "m": "2*a", "T": 1, "l": 1, "a": 1, "b": "3*a"},)"));
+    const dae::Description d = read(pendulum_with(
+        R"("parameters": {"note": "lengths", "m": "2*a", "T": 1, "l": 1, "a": 1, "b": "3*a"},)"));
     REQUIRE(d.warnings.size() == 1);
     CHECK(d.warnings[0] == "p.json:2:77 (/parameters/b): nothing uses the parameter b");
 }
@@ -137,7 +137,7 @@ TEST_CASE("a parameter that nothing uses gives a warning", "[dae][parameters]")
 TEST_CASE("wrong parameters and expressions are refused with file, line and column", "[dae][parameters]")
 {
     const auto with = [](const std::string& parameters) {
-        return refusal(pendulum("\"parameters\": " + parameters + ","));
+        return refusal_of_model(pendulum_with("\"parameters\": " + parameters + ","));
     };
     CHECK(with(R"({"l": "m", "m": "2*T", "T": "l"})") ==
           "p.json:2:22 (/parameters/l): the parameters depend on each other in a cycle: l -> m -> T -> l");
@@ -162,7 +162,7 @@ TEST_CASE("wrong parameters and expressions are refused with file, line and colu
     for (int k = 0; k < 1000; ++k) many += ", \"a" + std::to_string(k) + "\": 1";
     CHECK_THAT(with(many + "}"), Catch::Contains("at most 1000 parameters are allowed, got 1001"));
 
-    const auto mass = [](const std::string& m) { return refusal(pendulum(length, m)); };
+    const auto mass = [](const std::string& m) { return refusal_of_model(pendulum_with(length, m)); };
     CHECK(mass(R"("3*mm")") ==
           "p.json:3:38 (/bodies/0/mass): mass must be a number or an expression: unknown name 'mm' in "
           "\"3*mm\" at "
@@ -180,21 +180,22 @@ TEST_CASE("an exponent can be a parameter", "[dae][parameters]")
     const std::string n = R"("parameters": {"m": "2^n", "T": 1, "l": "(n - 1)^-n", "n": 3},)";
     const std::string torque =
         R"({"type": "torque", "body": "bar", "frame": "body", "components": [0, 0, "t^n"]})";
-    const dae::Description d = read(pendulum(n, "\"m^(1/n)\"", torque));
+    const dae::Description d = read(pendulum_with(n, "\"m^(1/n)\"", torque));
     CHECK(d.model->all_bodies()[0].m == Approx(2));
     CHECK(d.x.body[0].r.y() == 0.5 / 8);
     CHECK_THAT(d.text, Catch::Contains("t^(3)"));
     CHECK(d.warnings.empty());
-    CHECK_THAT(refusal(pendulum(n, R"("m^t")")), Catch::Contains("unknown name 't'"));
-    CHECK_THAT(refusal(pendulum(n, "\"(n-3)^(-n)\"")),
+    CHECK_THAT(refusal_of_model(pendulum_with(n, R"("m^t")")), Catch::Contains("unknown name 't'"));
+    CHECK_THAT(refusal_of_model(pendulum_with(n, "\"(n-3)^(-n)\"")),
                Catch::Contains("\"(n-3)^(-n)\" must be finite, got inf with n = 3"));
-    CHECK_THAT(refusal(pendulum(n, "\"2^(t*n)\"")), Catch::Contains("unknown name 't' in \"2^(t*n)\""));
+    CHECK_THAT(refusal_of_model(pendulum_with(n, "\"2^(t*n)\"")),
+               Catch::Contains("unknown name 't' in \"2^(t*n)\""));
 }
 
 TEST_CASE("a parameter can guard a division by itself", "[dae][parameters]")
 {
     const std::string z = R"-("parameters": {"m": "if(z, 1/z, 4)", "T": 1, "l": 1, "z": 0},)-";
-    CHECK(read(pendulum(z)).model->all_bodies()[0].m == 4);
+    CHECK(read(pendulum_with(z)).model->all_bodies()[0].m == 4);
 }
 
 TEST_CASE("a chain of 1000 parameters, each from the next, is evaluated", "[dae][parameters]")
@@ -202,13 +203,15 @@ TEST_CASE("a chain of 1000 parameters, each from the next, is evaluated", "[dae]
     std::string chain = R"("parameters": {"m": 1, "T": 1, "l": "a0")";
     for (int k = 0; k < 996; ++k)
         chain += ", \"a" + std::to_string(k) + "\": \"a" + std::to_string(k + 1) + " + 1\"";
-    CHECK(read(pendulum(chain + ", \"a996\": 4},")).x.body[0].r.y() == 500);
+    CHECK(read(pendulum_with(chain + ", \"a996\": 4},")).x.body[0].r.y() == 500);
 }
 
 TEST_CASE("a model may name its schema for editors", "[dae][parameters]")
 {
-    const std::string text = pendulum("\"$schema\": \"https://example.org/model.schema.json\"," + length);
+    const std::string text =
+        pendulum_with("\"$schema\": \"https://example.org/model.schema.json\"," + length);
     const dae::Description d = read(text);
-    CHECK(d.text == read(pendulum(length)).text);
-    CHECK_THAT(refusal(text, {"/$schema=3"}), Catch::Contains("(/$schema): $schema must be a string, got 3"));
+    CHECK(d.text == read(pendulum_with(length)).text);
+    CHECK_THAT(refusal_of_model(text, {"/$schema=3"}),
+               Catch::Contains("(/$schema): $schema must be a string, got 3"));
 }

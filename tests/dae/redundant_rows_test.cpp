@@ -9,6 +9,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/no_allocation.hpp"
 
@@ -21,11 +22,10 @@
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using Catch::Contains;
 
 namespace {
-
-const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
 /// Row of N four-bar windows with N + 1 upright cranks and N couplers of 1 m and 1 kg. The joints are added
 /// in a random order; seed 0 is the natural order.
@@ -91,7 +91,7 @@ double error_after_crossing(const std::string& scheme, double h, unsigned seed =
 }
 
 /// A model of the text of a file in which a bar hangs on a pin, with other keys
-std::string pendulum(const std::string& keys)
+std::string bar_on_pin(const std::string& keys)
 {
     return R"({"hilda_model": 1, "name": "pendulum", )" + keys + R"(
 "bodies": [{"name": "bar", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0.5, 0]}],
@@ -283,14 +283,14 @@ TEST_CASE("rows that contradict each other are rejected if all rows are kept", "
 
 TEST_CASE("redundant of a model file is drop or keep", "[dae][redundant]")
 {
-    CHECK_FALSE(read_model(pendulum(""), "file").model->keep_redundant);
-    CHECK_FALSE(read_model(pendulum(R"("redundant": "drop",)"), "file").model->keep_redundant);
-    const Description kept = read_model(pendulum(R"("redundant": "keep",)"), "file");
+    CHECK_FALSE(read_model(bar_on_pin(""), "file").model->keep_redundant);
+    CHECK_FALSE(read_model(bar_on_pin(R"("redundant": "drop",)"), "file").model->keep_redundant);
+    const Description kept = read_model(bar_on_pin(R"("redundant": "keep",)"), "file");
     CHECK(kept.model->keep_redundant);
     CHECK_THAT(kept.text, Contains(R"("redundant": "keep")"));
     CHECK(read_model(kept.text, "text").model->keep_redundant);
-    CHECK_THAT(read_model(pendulum(""), "file").text, !Contains("redundant"));
-    CHECK_THROWS_WITH(read_model(pendulum(R"("redundant": "keeps",)"), "file"),
+    CHECK_THAT(read_model(bar_on_pin(""), "file").text, !Contains("redundant"));
+    CHECK_THROWS_WITH(read_model(bar_on_pin(R"("redundant": "keeps",)"), "file"),
                       Contains("file:1:") && Contains("(/redundant)") && Contains("did you mean 'keep'?") &&
                           Contains("keeps"));
 }

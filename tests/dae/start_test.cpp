@@ -9,6 +9,7 @@
 #include "dae/joints.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/projection.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -17,12 +18,11 @@
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using Catch::Contains;
 using tests::Random;
 
 namespace {
-
-const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
 /// A chain of three different bars with a spherical, a universal and a revolute joint: 6 degrees of freedom.
 /// The positions satisfy the constraints.

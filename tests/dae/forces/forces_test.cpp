@@ -18,13 +18,15 @@
 
 #include <catch2/catch.hpp>
 
+#include <numbers>
+
 using namespace hilda;
 using namespace hilda::dae;
 using tests::Random;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 void add_bodies(Model& model, int bodies)
 {

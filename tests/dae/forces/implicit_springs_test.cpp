@@ -12,6 +12,7 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
+#include "tests/dae/axes.hpp"
 #include "tests/support/no_allocation.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,10 +21,9 @@
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 
 namespace {
-
-const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ();
 
 /// A body of mass 2 kg on a spring-damper along x, without gravity
 struct Oscillator {

@@ -13,24 +13,24 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/dae/axes.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
 using namespace hilda::dae;
+using namespace hilda::tests::axes;
 using lie::LoadEvaluation;
 
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-const Vec3 O = Vec3::Zero(), X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ();
-
-struct Oscillator {
+struct OscillatingBody {
     Model model;
     State x;
 
     /// A body of mass m at (1.01, 0, 0) m, without gravity
-    explicit Oscillator(double m)
+    explicit OscillatingBody(double m)
     {
         model.gravity.setZero();
         model.add({.name = "body", .m = m, .J_bar = Vec3(1, 1, 1).asDiagonal()});
@@ -68,7 +68,7 @@ TEST_CASE("the limit of a spring-damper is the step at which the schemes become 
 {
     const auto [k, c] = GENERATE(std::pair(1e6, 0.), std::pair(1e6, 500.), std::pair(10., 4e4));
     constexpr double m = 2;
-    Oscillator o(m);
+    OscillatingBody o(m);
     o.model.load(SpringDamper(ground, O, 0, O, k, c, 1));
     start(o.model, o.x);
     const Force& spring = *o.model.forces()[0];
@@ -85,7 +85,7 @@ TEST_CASE("the limit of a spring-damper is the step at which the schemes become 
 
 TEST_CASE("the limit of a spring uses the effective mass of the constrained bodies", "[dae][forces][stable]")
 {
-    Oscillator o(3);
+    OscillatingBody o(3);
     o.x.body[0].r = Vec3(0, 0, -0.5);
     o.model.constrain("hinge", revolute(ground, O, X, 0, 0.5 * Z, X));
     constexpr double k = 700, J = 1 + 3 * 0.25;  // about the hinge
@@ -104,7 +104,7 @@ TEST_CASE("the limit of a spring uses the effective mass of the constrained bodi
 
 TEST_CASE("the limit of an actuator contains the derivatives of its law", "[dae][forces][stable]")
 {
-    Oscillator o(2);
+    OscillatingBody o(2);
     o.x.body[0].rdot = 0.5 * X;
     o.model.load(SpringDamper(ground, O, 0, O, 100, 0, 1,
                               io::Expression("300*(l - 1) + 40*ldot^3", {"l", "ldot", "t"})));
@@ -114,7 +114,7 @@ TEST_CASE("the limit of an actuator contains the derivatives of its law", "[dae]
 
 TEST_CASE("the limit of a bushing is that of its stiffest direction", "[dae][forces][stable]")
 {
-    Oscillator o(2);
+    OscillatingBody o(2);
     const Bushing::Coefficients soft{.stiffness = Vec3(1e3, 2e3, 8e3),
                                      .rotational_stiffness = Vec3(1e3, 1e3, 2e3)},
         hard{.stiffness = Vec3(1e3, 2e3, 8e3), .rotational_stiffness = Vec3(1e3, 1e3, 9e3)};
@@ -127,7 +127,7 @@ TEST_CASE("the limit of a bushing is that of its stiffest direction", "[dae][for
 
 TEST_CASE("a limit of a distance or an angle limits the step while it is exceeded", "[dae][forces][stable]")
 {
-    Oscillator o(2);
+    OscillatingBody o(2);
     o.model.load(DistanceLimit(ground, O, 0, O, {.maximum = 1.02, .stiffness = 5e5}));
     o.model.load(AngleLimit(ground, X, 0, X, {.maximum = 0.1, .stiffness = 5e5}, o.x));
     start(o.model, o.x);

@@ -15,7 +15,7 @@ using lie::Vec3;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<std::string> sequences()
 {

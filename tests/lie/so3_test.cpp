@@ -4,13 +4,14 @@
 
 #include <catch2/catch.hpp>
 
+#include <numbers>
 #include <random>
 
 using namespace hilda::lie;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 using Long = long double;

@@ -6,22 +6,12 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/lie/state_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
-
-namespace {
-
-Eigen::VectorXd motion(const lie::State& x)
-{
-    const lie::Motion& body = x.body[0];
-    Eigen::VectorXd q(18);
-    q << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar;
-    return q;
-}
-
-}  // namespace
+using tests::motion;
 
 TEST_CASE("the declared order holds for loads that depend on velocities and for a driven joint (long)",
           "[lie][order]")

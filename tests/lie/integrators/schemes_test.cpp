@@ -8,6 +8,7 @@
 #include "lie/solver/linear_solver.hpp"
 #include "lie/system.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/lie/state_numbers.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/spinning_top.hpp"
 
@@ -15,6 +16,7 @@
 
 using namespace hilda;
 using lie::Vec3;
+using tests::motion;
 
 namespace {
 
@@ -23,15 +25,6 @@ lie::State at_end(const lie::Scheme& scheme, const lie::System& system, const li
 {
     const auto integrator = scheme.make(system, {.tolerance = 1e-13, .max_iterations = 30});
     return lie::march(start, *integrator, lie::TimeGrid::over(t_end, h, t_end)).row.back();
-}
-
-/// The variables to which Scheme::order applies: r, A, ṙ, ω̄
-Eigen::VectorXd motion(const lie::State& x)
-{
-    Eigen::VectorXd q(18);
-    const lie::Motion& body = x.body[0];
-    q << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar;
-    return q;
 }
 
 /// A step for which the leading term of the error dominates higher terms and rounding

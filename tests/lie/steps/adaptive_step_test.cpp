@@ -5,6 +5,7 @@
 #include "lie/check.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/lie/state_numbers.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/spinning_top.hpp"
 
@@ -13,6 +14,8 @@
 using namespace hilda;
 using lie::State;
 using lie::Vec3;
+using tests::motion;
+using tests::numbers;
 
 namespace {
 
@@ -32,17 +35,6 @@ std::vector<const lie::Scheme*> with_internal_steps()
         if (s.adaptive && s.formulation == "rA") all.push_back(&s);
     return all;
 }
-
-Eigen::VectorXd numbers(const State& x)
-{
-    const lie::Motion& body = x.body[0];
-    Eigen::VectorXd all(24 + x.lambda.size());
-    all << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar, body.rddot,
-        body.omegadot_bar, x.lambda;
-    return all;
-}
-
-Eigen::VectorXd motion(const State& x) { return numbers(x).head(18); }
 
 std::vector<State> rows(const lie::Scheme& s, const lie::System& system, const State& start, double rtol,
                         double end, double interval)

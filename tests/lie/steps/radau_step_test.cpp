@@ -6,6 +6,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/lie/state_numbers.hpp"
 #include "tests/support/driven_top.hpp"
 #include "tests/support/sprung_top.hpp"
 
@@ -15,6 +16,7 @@ using namespace hilda;
 using lie::RadauStep;
 using lie::State;
 using lie::Vec3;
+using tests::numbers;
 
 namespace {
 
@@ -44,15 +46,6 @@ public:
         return at;
     }
 };
-
-Eigen::VectorXd numbers(const State& x)
-{
-    const lie::Motion& body = x.body[0];
-    Eigen::VectorXd all(24 + x.lambda.size());
-    all << body.r, Eigen::Map<const Eigen::VectorXd>(body.A.data(), 9), body.rdot, body.omega_bar, body.rddot,
-        body.omegadot_bar, x.lambda;
-    return all;
-}
 
 }  // namespace
 

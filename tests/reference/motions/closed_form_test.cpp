@@ -11,13 +11,14 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <array>
+#include <numbers>
 
 using namespace hilda;
 using namespace hilda::reference;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Resultant constraint loads of the motion x under gravity, by the Newton-Euler equations
 std::vector<dae::Reaction> newton_euler(const tests::DoublePendulum& p, const Vec3& gravity,

@@ -23,7 +23,8 @@ using namespace hilda::dae;
 
 namespace {
 
-constexpr double pi = std::numbers::pi, g = 9.81;
+using std::numbers::pi;
+constexpr double g = 9.81;
 const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
 
 struct Mechanism {

@@ -3,6 +3,7 @@
 
 #include "reference/solvers/event.hpp"
 #include "reference/motions/swing_period.hpp"
+#include "tests/reference/solvers/oscillator.hpp"
 
 #include "lie/check.hpp"
 
@@ -10,19 +11,15 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 
 using namespace hilda;
 using namespace hilda::reference;
+using tests::oscillator;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-void oscillator(double, const ConstVectorRef& y, VectorRef ydot)
-{
-    ydot[0] = y[1];
-    ydot[1] = -y[0];
-}
+using std::numbers::pi;
 
 }  // namespace
 

@@ -12,6 +12,8 @@
 #include "tests/reference/reference_csv.hpp"
 #include "tests/support/spinning_top.hpp"
 
+#include <numbers>
+
 using namespace hilda;
 using namespace hilda::reference;
 using lie::Vec3;
@@ -99,7 +101,7 @@ void crank_and_bob(dae::Model& model, lie::State& x)
 {
     const Vec3 X = Vec3::UnitX(), Y = Vec3::UnitY(), Z = Vec3::UnitZ(), O = Vec3::Zero();
     const lie::Mat3 I = lie::Mat3::Identity();
-    constexpr double pi = 3.14159265358979323846;
+    using std::numbers::pi;
     tests::add_body(model, x, "crank", 1, {0.1, 0.1, 0.1}, O, I, O, {2 * pi, 0, 0});
     tests::add_body(model, x, "bob", 1, {0.02, 0.02, 0.02}, {0, 0.3, -0.5}, I, {0, 0, 0.6 * pi});
     model.constrain("shaft", dae::revolute(dae::ground, O, X, 0, O, X));

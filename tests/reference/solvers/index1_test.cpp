@@ -10,13 +10,15 @@
 #include "tests/reference/reference_csv.hpp"
 #include "tests/support/bristle.hpp"
 
+#include <numbers>
+
 using namespace hilda;
 using namespace hilda::reference;
 using tests::add_body;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 std::vector<std::vector<dae::Reaction>> loads(const dae::Model& model, const lie::Trajectory& run)
 {

@@ -2,6 +2,7 @@
 /// Ode, the interface to GSL's rk8pd.
 
 #include "reference/solvers/ode.hpp"
+#include "tests/reference/solvers/oscillator.hpp"
 
 #include "lie/check.hpp"
 
@@ -11,12 +12,7 @@
 
 using namespace hilda;
 using namespace hilda::reference;
-
-namespace {
-
-void oscillator(double, const ConstVectorRef& y, VectorRef ydot) { ydot << y[1], -y[0]; }
-
-}  // namespace
+using tests::oscillator;
 
 TEST_CASE("rk8pd integrates an oscillator to rounding error and stops exactly at the end", "[reference][ode]")
 {

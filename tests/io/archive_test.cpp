@@ -26,7 +26,7 @@ struct Content {
     bool operator==(const Content&) const = default;
 };
 
-std::string written()
+std::string written_content()
 {
     Content c{.t = 0.1, .list = {1, 2, 3}, .map = {{"a", "first"}, {"b", std::string("\0\1", 2)}, {"c", ""}}};
     io::Archive a(format);
@@ -34,7 +34,7 @@ std::string written()
     return a.bytes();
 }
 
-Content read(const std::string& bytes, const io::Archive::Format& of = format)
+Content read_content(const std::string& bytes, const io::Archive::Format& of = format)
 {
     io::Archive a(of, bytes, "file");
     Content c;
@@ -47,26 +47,27 @@ Content read(const std::string& bytes, const io::Archive::Format& of = format)
 
 TEST_CASE("an archive is read as it was written, and a damaged one is rejected", "[io][archive]")
 {
-    const std::string good = written();
-    const Content c = read(good);
+    const std::string good = written_content();
+    const Content c = read_content(good);
     CHECK(c.t == 0.1);
     CHECK(c.list == std::vector<int>{1, 2, 3});
     CHECK(c.map.at("b") == std::string("\0\1", 2));
     for (size_t k = 0; k < 8 * good.size(); ++k) {
         std::string bad = good;
         bad[k / 8] = static_cast<char>(bad[k / 8] ^ (1 << k % 8));
-        CHECK_THROWS_AS(read(bad), io::IoError);
+        CHECK_THROWS_AS(read_content(bad), io::IoError);
     }
     for (size_t length = 0; length < good.size(); ++length)
-        CHECK_THROWS_AS(read(good.substr(0, length)), io::IoError);
-    CHECK_THROWS_WITH(read(good + "x"), Contains("file: the checkpoint is damaged: its length must be"));
+        CHECK_THROWS_AS(read_content(good.substr(0, length)), io::IoError);
+    CHECK_THROWS_WITH(read_content(good + "x"),
+                      Contains("file: the checkpoint is damaged: its length must be"));
 }
 
 TEST_CASE("an archive of another program or version is rejected with its version", "[io][archive]")
 {
-    CHECK_THROWS_WITH(read(written(), {.letters = "HILDATST", .version = 4}),
+    CHECK_THROWS_WITH(read_content(written_content(), {.letters = "HILDATST", .version = 4}),
                       "file: the checkpoint has format 3; this program reads format 4");
-    CHECK_THROWS_WITH(read(written(), {.letters = "HILDAXYZ", .version = 3}),
+    CHECK_THROWS_WITH(read_content(written_content(), {.letters = "HILDAXYZ", .version = 3}),
                       Contains("the header is not that"));
 }
 
@@ -77,11 +78,11 @@ TEST_CASE("a length in an archive is compared with its size, and unread values a
     wrong.value(c.t);
     std::uint64_t most = ~std::uint64_t{0} / 4;  // the product with the size of an element overflows
     wrong.value(most);
-    CHECK_THROWS_WITH(read(wrong.bytes()), Contains("invalid length of a list"));
+    CHECK_THROWS_WITH(read_content(wrong.bytes()), Contains("invalid length of a list"));
     io::Archive more(format);
     c.transfer(more);
     more.value(c.t);
-    CHECK_THROWS_WITH(read(more.bytes()), Contains("unread bytes"));
+    CHECK_THROWS_WITH(read_content(more.bytes()), Contains("unread bytes"));
 }
 
 TEST_CASE("of two checkpoints the last complete one is read", "[io][archive]")

@@ -12,7 +12,7 @@ namespace {
 
 /// The message with which an option value is refused; "" if it is accepted
 template <class Convert>
-std::string refusal(const Convert& convert, const std::string& text)
+std::string refusal_of_option(const Convert& convert, const std::string& text)
 {
     try {
         convert("--x", text);
@@ -48,7 +48,7 @@ TEST_CASE("numbers of the command line are finite, within their range and withou
     for (const Kind& kind : kinds)
         for (const std::vector<std::string>* texts : {&no_numbers, &kind.outside})
             for (const std::string& text : *texts)
-                CHECK(refusal(kind.convert, text) == "--x: " + kind.rule + ", got '" + text + "'");
+                CHECK(refusal_of_option(kind.convert, text) == "--x: " + kind.rule + ", got '" + text + "'");
 }
 
 TEST_CASE("whole numbers of the command line are within their range", "[io][options]")
@@ -61,13 +61,14 @@ TEST_CASE("whole numbers of the command line are within their range", "[io][opti
         return io::count_up_to(8, option, text);
     };
     for (const std::string text : {"", "0", "-1", "1.5", "1e3", "2147483648", "one"}) {
-        CHECK(refusal(io::positive_count, text) ==
+        CHECK(refusal_of_option(io::positive_count, text) ==
               "--x: must be a whole number, at least 1, got '" + text + "'");
-        CHECK(refusal(up_to_8, text) == "--x: must be a whole number from 1 to 8, got '" + text + "'");
+        CHECK(refusal_of_option(up_to_8, text) ==
+              "--x: must be a whole number from 1 to 8, got '" + text + "'");
     }
-    CHECK(refusal(up_to_8, "9") == "--x: must be a whole number from 1 to 8, got '9'");
+    CHECK(refusal_of_option(up_to_8, "9") == "--x: must be a whole number from 1 to 8, got '9'");
     for (const std::string text : {"", "-1", "0.5", "18446744073709551616"})
-        CHECK(refusal(io::seed, text) ==
+        CHECK(refusal_of_option(io::seed, text) ==
               "--x: must be a whole number from 0 to 2^64 - 1, got '" + text + "'");
 }
 
@@ -77,7 +78,7 @@ TEST_CASE("lists, words, paths and settings of the command line", "[io][options]
     CHECK(io::list("--x", "a") == Words{"a"});
     CHECK(io::list("--x", "a,b c,d") == Words{"a", "b c", "d"});
     for (const std::string text : {"", ",", "a,", ",a", "a,,b"})
-        CHECK(refusal(io::list, text) ==
+        CHECK(refusal_of_option(io::list, text) ==
               "--x: must be a list such as A,B without empty parts, got '" + text + "'");
 
     const Words words = {"cpu", "cuda", "none"};
@@ -85,12 +86,12 @@ TEST_CASE("lists, words, paths and settings of the command line", "[io][options]
         return io::one_of(option, text, words);
     };
     CHECK(one_of("--x", "cuda") == "cuda");
-    CHECK(refusal(one_of, "gpu") == "--x: must be cpu, cuda or none, got 'gpu'");
+    CHECK(refusal_of_option(one_of, "gpu") == "--x: must be cpu, cuda or none, got 'gpu'");
 
     CHECK(io::path("--x", "a/b") == "a/b");
-    CHECK(refusal(io::path, "") == "--x: must not be empty");
+    CHECK(refusal_of_option(io::path, "") == "--x: must not be empty");
     CHECK(io::setting("--x", "/a/0=1=2") == "/a/0=1=2");
     for (const std::string text : {"", "/a", "a=1", "=1"})
-        CHECK(refusal(io::setting, text) ==
+        CHECK(refusal_of_option(io::setting, text) ==
               "--x: must be /json/pointer=VALUE, such as /gravity/2=-1.62, got '" + text + "'");
 }

@@ -59,7 +59,7 @@ hilda_find_optional(HILDA_WITH_GRAINS "Grains: hilda-granular, co-simulation, th
 hilda_find_optional(HILDA_WITH_HDF5 "Tables in HDF5 files" "hilda run has no --format hdf5" libhdf5-dev HDF5Serial 1.10.2)
 # Open MPI: the program reads its environment variables.
 set(MPI_CXX_SKIP_MPICXX TRUE)
-hilda_find_optional(HILDA_WITH_MPI "Studies under mpirun" "hilda study does not run under mpirun" libopenmpi-dev MPI 3.1 COMPONENTS CXX)
+hilda_find_optional(HILDA_WITH_MPI "Several processes under mpirun" "hilda-granular and hilda cosim do not run under mpirun" libopenmpi-dev MPI 3.1 COMPONENTS CXX)
 
 hilda_find_optional(HILDA_WITH_URDF "Import of URDF files" "hilda import reads no URDF files" liburdfdom-dev Urdfdom)
 hilda_find_optional(HILDA_WITH_MJCF "Import of MJCF files" "hilda import reads no MJCF files" libmujoco-dev MuJoCo 2.2)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Messages between the processes (ranks) that mpirun has started.
+/// Messages between the processes (ranks) that mpirun has started, for co-simulations.
 
 #pragma once
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Loads hilda-mpi.so (mpi.cpp) where mpirun has started several ranks. Without mpirun the program does not
-/// load MPI.
+/// Loads hilda-mpi.so (mpi.cpp) for hilda cosim --transport mpi. Otherwise the program does not load MPI.
 
 #include "studies/distribution/communicator.hpp"
 
@@ -37,7 +36,7 @@ std::unique_ptr<Communicator> make_communicator()
     if (symbol == nullptr)
         throw io::NotAvailable(
             "mpirun: this program was built without MPI; install it (Debian: apt-get install "
-            "libopenmpi-dev), then configure and build again, or use --shard");
+            "libopenmpi-dev), then configure and build again");
     std::unique_ptr<Communicator> made;
     reinterpret_cast<void (*)(std::unique_ptr<Communicator>&)>(symbol)(made);
     return made;

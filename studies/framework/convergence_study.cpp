@@ -15,7 +15,7 @@ Sweep<ErrorRun> ConvergenceStudy::runs(const StudyContext& study, const std::vec
         run.at_floor.assign(norms.size(), 0);
     }
     all.compute(study, errors);
-    for (ErrorRun& run : all) run.error.resize(norms.size(), std::nan(""));  // of a run that is lost
+    for (ErrorRun& run : all) run.error.resize(norms.size(), std::nan(""));  // of a run that has failed
     for (size_t k = 1; k < all.size(); ++k) {
         if (k % steps.size() == 0) continue;
         const ErrorRun& before = all[k - 1];

@@ -2,7 +2,6 @@
 #include "studies/framework/pool.hpp"
 
 #include "io/progress.hpp"
-#include "studies/distribution/ranks.hpp"
 #include "studies/running/finished_jobs.hpp"
 
 #include <fmt/format.h>
@@ -11,10 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <vector>
 
@@ -125,7 +122,7 @@ void Pool::run_here(const std::function<bool(long)>& job) const
         if (e) std::rethrow_exception(e);
 }
 
-void Pool::run(const std::function<void(long)>& job, const Transfer& transfer, const Lost& lost) const
+void Pool::run(const std::function<void(long)>& job, const Transfer& transfer) const
 {
     if (sharing == nullptr) {
         run(job);
@@ -133,64 +130,15 @@ void Pool::run(const std::function<void(long)>& job, const Transfer& transfer, c
     }
     FinishedJobs* const finished = sharing->finished;
     const long pool = finished == nullptr ? 0 : finished->next_pool();
-    if (sharing->ranks != nullptr) {
-        run_on_ranks(pool, job, transfer, lost);
-    } else {
-        run_here([&](long k) {
-            if (!sharing->shard.has(k)) return false;
-            const auto result = [&](io::Archive& a) { transfer(a, k); };
-            if (finished != nullptr && finished->restore({pool, k}, result)) return false;
-            job(k);
-            if (finished != nullptr) finished->keep({pool, k}, result);
-            return true;
-        });
-    }
-    if (sharing->shard.is_part()) throw PartDone{};
-}
-
-void Pool::run_on_ranks(long pool, const std::function<void(long)>& job, const Transfer& transfer,
-                        const Lost& lost) const
-{
-    Ranks& ranks = *sharing->ranks;
-    const auto compute = [&](long k) {
-        job(k);
-        io::Archive a;
-        transfer(a, k);
-        return a.bytes();
-    };
-    if (!ranks.is_first()) {
-        ranks.work(threads, compute);
-        throw PartDone{};
-    }
-    FinishedJobs* const finished = sharing->finished;
-    PoolLine line(label, count, cost);
-    std::deque<long> jobs;
-    for (long k = 0; k < count; ++k) {
+    run_here([&](long k) {
+        if (!sharing->shard.has(k)) return false;
         const auto result = [&](io::Archive& a) { transfer(a, k); };
-        if (!sharing->shard.has(k) || (finished != nullptr && finished->restore({pool, k}, result)))
-            line.ended(k, false);
-        else
-            jobs.push_back(k);
-    }
-    std::optional<JobEnd> thrown;  // with the lowest number
-    const auto report = [&](const JobEnd& end) {
-        const auto result = [&](io::Archive& a) { transfer(a, end.job); };
-        if (end.kind == JobEnd::computed) {
-            io::Archive a(end.text, "the result of a run");
-            result(a);
-            a.end();
-            if (finished != nullptr) finished->keep({pool, end.job}, result);
-        } else if (end.kind == JobEnd::threw) {
-            if (!thrown || end.job < thrown->job) thrown = end;
-        } else {
-            sharing->lost.push_back(end.text);
-            if (lost) lost(end.job, end.text);
-        }
-        line.ended(end.job, true);
-    };
-    ranks.distribute(std::move(jobs), threads, compute, report, [&] { line.update(); });
-    line.clear();
-    if (thrown) thrown->rethrow();
+        if (finished != nullptr && finished->restore({pool, k}, result)) return false;
+        job(k);
+        if (finished != nullptr) finished->keep({pool, k}, result);
+        return true;
+    });
+    if (sharing->shard.is_part()) throw PartDone{};
 }
 
 }  // namespace hilda::studies

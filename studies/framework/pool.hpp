@@ -17,20 +17,17 @@ class Archive;
 namespace hilda::studies {
 
 class FinishedJobs;
-class Ranks;
 
 /// What the pools of a study share
 struct JobSharing {
-    FinishedJobs* finished = nullptr;    ///< keeps the results of jobs for a resumed study; nullptr: none
-    Ranks* ranks = nullptr;              ///< over which the jobs are distributed; nullptr: this process
-    Shard shard = {};                    ///< the jobs that are computed
-    std::vector<std::string> lost = {};  ///< a line for each job whose process was ended
+    FinishedJobs* finished = nullptr;  ///< keeps the results of jobs for a resumed study; nullptr: none
+    Shard shard = {};                  ///< the jobs that are computed
 };
 
 class Pool {
 public:
-    /// `count` jobs on at most `threads` threads, or in as many processes on each rank. A progress line with
-    /// this label is shown on stderr; none for "".
+    /// `count` jobs on at most `threads` threads. A progress line with this label is shown on stderr; none
+    /// for "".
     Pool(int threads, std::string label, long count, JobSharing* sharing = nullptr)
         : threads(threads), label(std::move(label)), count(count), sharing(sharing)
     {}
@@ -48,21 +45,16 @@ public:
     void run(const std::function<void(long)>& job) const;
 
     using Transfer = std::function<void(io::Archive&, long)>;
-    using Lost = std::function<void(long, const std::string&)>;
     /// The same for jobs whose results transfer(archive, k) writes or reads. A job that finished before the
     /// study was interrupted is not called again: its result is read.
     ///
-    /// The jobs of a study that accepts takes::shard are distributed over the ranks of mpirun and over
-    /// shards. A process that has only a part of them ends with PartDone. A job on a rank whose process is
-    /// ended, for example because the memory is exhausted, has no result: lost(k, message) is called for it,
-    /// where `message` says how the process ended.
-    void run(const std::function<void(long)>& job, const Transfer& transfer, const Lost& lost = {}) const;
+    /// The jobs of a study that accepts takes::shard are distributed over shards. A process that has only a
+    /// part of them ends with PartDone.
+    void run(const std::function<void(long)>& job, const Transfer& transfer) const;
 
 private:
     /// job(k) returns whether the job was computed. Its result may have been read from a file.
     void run_here(const std::function<bool(long)>& job) const;
-    void run_on_ranks(long pool, const std::function<void(long)>& job, const Transfer& transfer,
-                      const Lost& lost) const;
 
     int threads;
     std::string label;

@@ -89,7 +89,7 @@ enum : unsigned {
     rtol = 4096,
     seed = 8192,
     strict = 16384,
-    /// One pool of independent runs: --shard and mpirun. Code after it runs once all results are there.
+    /// One pool of independent runs: --shard. Code after it runs once all results are there.
     shard = 32768
 };
 }  // namespace takes

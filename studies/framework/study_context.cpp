@@ -8,7 +8,6 @@
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "io/provenance.hpp"
-#include "studies/distribution/ranks.hpp"
 #include "studies/running/latex.hpp"
 #include "studies/running/named_model.hpp"
 #include "studies/running/plot.hpp"
@@ -96,8 +95,7 @@ std::string command_of(const StudyOptions& o)
 
 }  // namespace
 
-StudyContext::StudyContext(const Study& study, const StudyOptions& options, Ranks* ranks,
-                           const JobRecords* collected)
+StudyContext::StudyContext(const Study& study, const StudyOptions& options, const JobRecords* collected)
     : name(study.name), keys(study.keys), options(options), answers(study.answers)
 {
     for (const Expectation& e : options.expect) {
@@ -109,14 +107,12 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options, Rank
     }
     if (options.vtk > 0 && options.output.empty())
         refuse("--vtk writes files: with --json it needs --output");
-    const bool is_first = ranks == nullptr || ranks->is_first();
     if (collected != nullptr)
         finished = std::make_unique<FinishedJobs>(*collected, identity(name, options));
-    else if (!options.output.empty() && is_first)
+    else if (!options.output.empty())
         finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume,
                                                   command_of(options));
-    sharing = std::make_unique<JobSharing>(
-        JobSharing{.finished = finished.get(), .ranks = ranks, .shard = options.shard});
+    sharing = std::make_unique<JobSharing>(JobSharing{.finished = finished.get(), .shard = options.shard});
     if (options.resume && !options.quiet && collected == nullptr)
         io::message(fmt::format(
             "hilda: {} read from {}\n",
@@ -203,12 +199,8 @@ void StudyContext::job(const std::function<void()>& job,
 void StudyContext::jobs(long count, const std::function<void(long)>& job,
                         const Pool::Transfer& transfer) const
 {
-    const int processes = sharing->ranks == nullptr ? 1 : options.jobs;
-    Pool(processes, "", count, sharing.get()).run(job, transfer);
-    if (!sharing->lost.empty()) throw PartDone{};  // reported by finish_shard()
+    Pool(1, "", count, sharing.get()).run(job, transfer);
 }
-
-bool StudyContext::writes_results() const { return sharing->ranks == nullptr || sharing->ranks->is_first(); }
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
 {
@@ -353,7 +345,6 @@ int StudyContext::finish()
     else if (!options.quiet)
         std::cout << text.str() << failed_runs;
     if (!options.output.empty()) write(all);
-    if (report_lost_runs()) return io::exit_code::numerical_failure;  // the others remain for --resume
     if (finished) {
         io::EndOnSignal::ignore();  // the results are complete, there is nothing left to resume
         finished->remove();
@@ -366,22 +357,8 @@ int StudyContext::finish()
     return passed ? io::exit_code::done : io::exit_code::expectation_failed;
 }
 
-/// Reports the runs whose processes were ended. False if there are none.
-bool StudyContext::report_lost_runs() const
-{
-    const std::vector<std::string>& lost = sharing->lost;
-    if (lost.empty()) return false;
-    io::message(fmt::format("hilda: error[killed]: study {}: {} lost: {}{}\n", name,
-                            io::counted(static_cast<long>(lost.size()), "run was", "runs were"), lost.front(),
-                            finished ? "; the same command with --resume computes " +
-                                           std::string(lost.size() == 1 ? "it" : "them") + " again"
-                                     : ""));
-    return true;
-}
-
 int StudyContext::finish_shard()
 {
-    if (report_lost_runs()) return io::exit_code::numerical_failure;
     finished->end_shard();
     if (!options.quiet)
         std::cout << fmt::format(

@@ -34,10 +34,8 @@ public:
     /// the study does not have, for --vtk without a directory, and for --resume with other options than the
     /// interrupted study.
     ///
-    /// `ranks`: over which the runs are distributed; nullptr: this process computes them. `collected`: the
-    /// results of all runs, from shards; nullptr: they are computed.
-    StudyContext(const Study& study, const StudyOptions& options, Ranks* ranks = nullptr,
-                 const JobRecords* collected = nullptr);
+    /// `collected`: the results of all runs, from shards; nullptr: they are computed.
+    StudyContext(const Study& study, const StudyOptions& options, const JobRecords* collected = nullptr);
 
     const std::string& name;
     const std::vector<std::string>& keys;  ///< of --expect
@@ -63,16 +61,13 @@ public:
     /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
     /// and the label. The results of its jobs are kept in the file of the finished jobs.
     Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
-    /// Calls job(), on this thread and without a progress line, on each rank and in each shard. `transfer`
+    /// Calls job(), on this thread and without a progress line, in each shard. `transfer`
     /// writes or reads its result, which is kept in the file of the finished jobs: a job that finished before
     /// the study was interrupted is not called again.
     void job(const std::function<void()>& job, const std::function<void(io::Archive&)>& transfer) const;
     /// Calls job(0) … job(count - 1), which do not depend on each other, one after the other on this thread
-    /// and without a progress line; ranks and shards share them. See job() for `transfer`. Ends the study
-    /// with PartDone if a rank has lost one.
+    /// and without a progress line; shards share them. See job() for `transfer`.
     void jobs(long count, const std::function<void(long)>& job, const Pool::Transfer& transfer) const;
-    /// Whether this process writes to the output directory: true except on the ranks of mpirun other than 0
-    bool writes_results() const;
 
     // Results
     StudyText text;                                          ///< for stdout
@@ -123,8 +118,6 @@ private:
         numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
     std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory
     std::unique_ptr<JobSharing> sharing;     ///< of the pools
-
-    bool report_lost_runs() const;
 };
 
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known

@@ -36,8 +36,7 @@ public:
     }
 
     /// Calls job(row) for each row, on the threads of --jobs. Rows with small steps take longest. They start
-    /// first, so that no long run is alone at the end. A numerical failure becomes the status of its row; a
-    /// run on a rank of mpirun whose process was ended has the status "killed".
+    /// first, so that no long run is alone at the end. A numerical failure becomes the status of its row.
     template <class Job>
     void compute(const StudyContext& study, const Job& job, const std::string& label = "")
     {
@@ -48,10 +47,7 @@ public:
         study.pool(this->size(), label)
             .with_cost([&](long k) { return cost((*this)[queue[k]]); })
             .run([&](long k) { compute_row((*this)[queue[k]], job); },
-                 [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); },
-                 [&](long k, const std::string& how) {
-                     (*this)[queue[k]].status = "killed", (*this)[queue[k]].message = how;
-                 });
+                 [&](io::Archive& a, long k) { transfer(a, (*this)[queue[k]]); });
     }
     /// The same, one row after the other, for studies that measure time
     template <class Job>

@@ -3,7 +3,7 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
-#include "studies/distribution/ranks.hpp"
+#include "studies/distribution/communicator.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
@@ -84,14 +84,6 @@ const std::vector<OptionOfSome>& options_of_some()
     return all;
 }
 
-std::string studies_of_independent_runs()
-{
-    std::string all;
-    for (const Study& study : studies())
-        if ((study.accepted & takes::shard) != 0) all += (all.empty() ? "" : ", ") + study.name;
-    return all;
-}
-
 /// Rejects options that the study does not use; the message names the studies that use them.
 void reject_unused_options(const Study& study, const StudyOptions& options)
 {
@@ -133,19 +125,15 @@ bool takes_option(const Study& study, const std::string& option)
 namespace {
 
 /// Completes the options by defaults. io::UsageError for options that exclude each other.
-void complete(StudyOptions& options, const Study& study, const Ranks* ranks)
+void complete(StudyOptions& options, const Study& study)
 {
     const std::string& kind = study.name;
     reject_unused_options(study, options);
-    if (ranks != nullptr && (study.accepted & takes::shard) == 0)
-        throw io::UsageError("study " + kind + ": mpirun is for " + studies_of_independent_runs());
     const bool timed =
         (study.accepted & takes::repeats) != 0;  // concurrent runs would disturb the measurement
     if (timed && options.repeats == 0) options.repeats = 5;
     if (options.jobs == 0)
-        options.jobs = timed || ranks != nullptr
-                           ? 1
-                           : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+        options.jobs = timed ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     if (options.output.empty() && !options.json)
         options.output =
             "out/" + kind +
@@ -164,17 +152,7 @@ void complete(StudyOptions& options, const Study& study, const Ranks* ranks)
         throw io::UsageError("study " + kind + ": --force and --resume exclude each other");
 }
 
-/// On a rank of mpirun other than 0: computes runs for rank 0, which writes the results.
-void compute_runs_of(const Study& study, StudyOptions options, Ranks& ranks)
-{
-    options.quiet = true;
-    options.json = false;
-    options.resume = true;  // files of the output directory are not removed
-    StudyContext context(study, options, &ranks);
-    study.run(context);
-}
-
-int run_here(const Study& study, const StudyOptions& options, Ranks* ranks, const JobRecords* collected)
+int run_here(const Study& study, const StudyOptions& options, const JobRecords* collected)
 {
     std::optional<io::OutputLock> lock;
     if (!options.output.empty()) {
@@ -189,7 +167,7 @@ int run_here(const Study& study, const StudyOptions& options, Ranks* ranks, cons
                                                   ", the same command with --resume continues");
     std::optional<StudyContext> context;
     try {
-        context.emplace(study, options, ranks, collected);
+        context.emplace(study, options, collected);
         study.run(*context);
         return context->finish();
     } catch (const PartDone&) {
@@ -206,34 +184,21 @@ int run_here(const Study& study, const StudyOptions& options, Ranks* ranks, cons
 
 int run_study(const std::string& kind, StudyOptions options)
 {
-    std::unique_ptr<Ranks> ranks;
-    try {
-        ranks = Ranks::start();
-    } catch (const io::NotAvailable&) {
-        if (rank_of_environment() > 0) return io::exit_code::not_available;  // rank 0 reports it
-        throw;
-    }
-    if (ranks == nullptr || ranks->is_first()) {
-        const Study& study = find_study(kind);
-        complete(options, study, ranks.get());
-        return run_here(study, options, ranks.get(), nullptr);
-    }
-    try {
-        const Study& study = find_study(kind);
-        complete(options, study, ranks.get());
-        compute_runs_of(study, options, *ranks);
-    } catch (const PartDone&) {
-    } catch (const std::exception& error) {  // most errors are those of rank 0 as well, which reports them
-        ranks->report_failure(error.what());
-    }
-    return io::exit_code::done;
+    const Study& study = find_study(kind);
+    complete(options, study);
+    if (const int ranks = ranks_of_environment(); ranks > 1 && !options.shard.is_part())
+        throw io::UsageError(
+            fmt::format("study {}: each of the {} processes of mpirun would compute the whole "
+                        "study; use --shard I/N and hilda collect",
+                        kind, ranks));
+    return run_here(study, options, nullptr);
 }
 
 int run_collected(const std::string& kind, StudyOptions options, const JobRecords& collected)
 {
     const Study& study = find_study(kind);
-    complete(options, study, nullptr);
-    return run_here(study, options, nullptr, &collected);
+    complete(options, study);
+    return run_here(study, options, &collected);
 }
 
 }  // namespace hilda::studies

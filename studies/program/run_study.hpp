@@ -18,9 +18,6 @@ bool takes_option(const Study& study, const std::string& option);
 /// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
 /// it must be new or empty unless options.force is set. With options.json and without options.output no files
 /// are written. io::UsageError for an unknown study or for an option that the study does not use.
-///
-/// Where mpirun has started several ranks, rank 0 does this and the others compute runs for it; their exit
-/// code is 0.
 int run_study(const std::string& kind, StudyOptions options);
 
 /// The same with the results of all runs, from shards: no run is computed.

@@ -96,8 +96,7 @@ void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
                "overwrite an output directory that is not empty; accept a reference solution that is too "
                "coarse");
     value(c, "--jobs", "N",
-          "number of concurrent runs; default: the number of cores, or 1 in a study that measures time and "
-          "on each rank of mpirun",
+          "number of concurrent runs; default: the number of cores, or 1 in a study that measures time",
           assign(o.jobs, positive_count));
     value(c, "--shard", "I/N",
           "compute part I of N of the runs, for a job array; hilda collect then writes the results of all "

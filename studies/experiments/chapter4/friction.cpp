@@ -148,8 +148,7 @@ void friction_experiments(StudyContext& s)
              [&](io::Archive& a, long k) {
                  const auto& [c, r] = jobs[k];
                  c->curves[r].transfer(a), a.list(c->failures[r]), c->snapshots[r].transfer(a);
-             },
-             [&](long k, const std::string& how) { jobs[k].first->failures[jobs[k].second] = how; });
+             });
 
     std::vector<Checked> checks;
     std::vector<NamedCurve> named;

@@ -47,7 +47,7 @@ const std::vector<InclineGrid> grids = {{"published", range(40, 120, 1, 200), ra
 struct InclineCell {
     double eta = 0, angle = 0;  ///< [1, degrees]
     double published = std::nan("");
-    int state = -1;  ///< -1: the process of the cell was ended
+    int state = 0;
     /// Velocity of the centre and R times the angular velocity at the end, positive up the slope [m/s]
     double v = 0, R_omega = 0;
 

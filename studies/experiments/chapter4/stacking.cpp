@@ -49,7 +49,6 @@ struct StackCell {
     bool found = false;                         ///< the critical mass is within the bounds of the bisection
     double published = std::nan("");
     int runs = 0, undecided = 0;
-    bool lost = false;  ///< the process of the cell was ended
 
     void transfer(io::Archive& a)
     {
@@ -91,8 +90,7 @@ void bisect(StackCell& cell, double h, double end)
 std::string collapse_mode(const StackCell& cell)
 {
     const StackOutcome& f = cell.at_critical;
-    return cell.lost             ? "killed"
-           : !cell.found         ? "-"
+    return !cell.found           ? "-"
            : f.rolls && f.slides ? "both"
            : f.rolls             ? "rolling"
            : f.slides            ? "sliding"
@@ -285,8 +283,7 @@ void stacking(StudyContext& s)
     };
     s.pool(cells.size() + of_figures.size() + s.options.check)
         .run([&](long k) { bisect(cell(k), &cell(k) == &refined ? o.h / refinement : o.h, o.end); },
-             [&](io::Archive& a, long k) { cell(k).transfer(a); },
-             [&](long k, const std::string&) { cell(k).lost = true; });
+             [&](io::Archive& a, long k) { cell(k).transfer(a); });
 
     const std::vector<MassCurve> curves = curves_of(cells, o.grid);
     s.text << fmt::format(

@@ -42,7 +42,7 @@ Table as_table(const ValidationTable& validation_table)
 }
 
 /// Keeps the results of the parts with their warnings in the file of the finished jobs, and the state of a
-/// long part in a checkpoint of the output directory. Ranks and shards share independent parts. `of_part`
+/// long part in a checkpoint of the output directory. Shards share independent parts. `of_part`
 /// receives the warnings of a part.
 granular::ValidationProgress kept_by(const StudyContext& study, granular::ValidationWarnings& warnings,
                                      granular::ValidationWarnings& of_part)

@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
+
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
@@ -182,4 +184,15 @@ TEST_CASE("wrong shards are refused", "[studies][shard]")
 
     write(in / "copy/study.shard", read(in / "a-1-of-3/study.shard").substr(0, 20));
     check_refused(in, {"collect", "copy"}, 5, "copy/study.shard: is not the file");
+}
+
+TEST_CASE("a study under mpirun is refused without --shard", "[studies][shard]")
+{
+    const Scratch in;
+    setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
+    check_refused(in, incline, 2,
+                  "study incline-sweep: each of the 2 processes of mpirun would compute the whole study; use "
+                  "--shard I/N and hilda collect");
+    CHECK(compute(in, incline, "part", 1, 2).code == 0);
+    unsetenv("OMPI_COMM_WORLD_SIZE");
 }

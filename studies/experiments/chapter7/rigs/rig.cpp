@@ -79,7 +79,7 @@ Rigs::Rigs(const StudyContext& of) : study(of)
 {
     const std::string &output = study.options.output,
                       own = "hilda-" + study.name + '-' + std::to_string(getpid());
-    if (output.empty() || !study.writes_results()) temporary = (fs::temp_directory_path() / own).string();
+    if (output.empty()) temporary = (fs::temp_directory_path() / own).string();
     folder = output.empty() ? temporary : output + "/runs";
     bed_folder = temporary.empty() ? folder : temporary;
     fs::create_directories(bed_folder);

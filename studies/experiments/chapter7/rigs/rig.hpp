@@ -45,7 +45,7 @@ struct RigRun {
 class Rigs {
 public:
     /// Makes the folder of the runs: below the output directory of the study, or a temporary one, which the
-    /// destructor removes. Ranks of mpirun other than 0 have a temporary folder for their bed.
+    /// destructor removes.
     explicit Rigs(const StudyContext& study);
     ~Rigs();
     Rigs(const Rigs&) = delete;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/sweep.hpp"
 
 namespace hilda::studies {
@@ -50,6 +51,19 @@ void set_ratios(std::vector<Timed>& runs, const std::string& baseline)
     for (Timed& run : runs)
         for (const Timed& of : runs)
             if (of.c == run.c && of.h == run.h && of.scheme->name == baseline) run.ratio = ratio(run, of);
+}
+
+/// For each run of rA-half-1 the bounds of its ratio to rA-full-1. They are wide, because a loaded machine
+/// disturbs the times.
+template <class Timed>
+std::vector<Criterion> criteria_of_times(const std::vector<Timed>& runs)
+{
+    std::vector<Criterion> all;
+    for (const Timed& run : runs)
+        if (run.scheme->name == "rA-half-1")
+            all.push_back(
+                between("CPU time of a step over that of rA-full-1, " + run.name(), run.ratio, 0.4, 1.25));
+    return all;
 }
 
 namespace column {

@@ -3,11 +3,12 @@
 
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "io/progress.hpp"
 #include "io/provenance.hpp"
-#include "studies/program/reproduction_page.hpp"
+#include "studies/program/reproduction.hpp"
 #include "studies/running/finished_jobs.hpp"
 #include "studies/running/provenance.hpp"
 
@@ -19,11 +20,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <deque>
 #include <filesystem>
@@ -44,27 +43,11 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 constexpr const char* record_name = "reproduce.json";
 constexpr int most_processes = 4;
 
-/// A new file for the output of a process; closed at the end of its life
-class NewFile {
-public:
-    explicit NewFile(const std::string& file)
-        : descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666))
-    {
-        if (descriptor < 0) throw io::IoError(file + ": cannot be written: " + std::strerror(errno));
-    }
-    ~NewFile() { close(descriptor); }
-    NewFile(const NewFile&) = delete;
-    NewFile& operator=(const NewFile&) = delete;
-
-    const int descriptor;
-};
-
-/// Starts this program with these words and this number of OpenMP threads, and its output in two files.
+/// Starts this program with these words and this number of OpenMP threads, and its output in two new files.
 /// Returns the process.
 pid_t start(std::vector<std::string> words, int threads, const std::string& output,
             const std::string& messages)
 {
-    const NewFile out(output), err(messages);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -76,9 +59,11 @@ pid_t start(std::vector<std::string> words, int threads, const std::string& outp
         // Threads that wait actively would slow down the studies beside this one.
         setenv("OMP_NUM_THREADS", omp_threads.c_str(), 0);
         setenv("OMP_WAIT_POLICY", "passive", 0);
-        dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
-        dup2(out.descriptor, STDOUT_FILENO);
-        dup2(err.descriptor, STDERR_FILENO);
+        constexpr int create = O_WRONLY | O_CREAT | O_TRUNC;
+        if (dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO) < 0 ||
+            dup2(::open(output.c_str(), create, 0666), STDOUT_FILENO) < 0 ||
+            dup2(::open(messages.c_str(), create, 0666), STDERR_FILENO) < 0)
+            _exit(io::exit_code::input_output);
         execv("/proc/self/exe", argv.data());
         _exit(io::exit_code::not_available);
     }
@@ -97,13 +82,11 @@ std::string utc_now()
 
 class Reproduce {
 public:
-    explicit Reproduce(const ReproduceOptions& o) : o(o), mode(o.full ? "full" : "quick")
+    explicit Reproduce(const ReproduceOptions& o) : o(o)
     {
-        const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
         const int jobs = o.jobs > 0 ? o.jobs : static_cast<int>(cores);
         processes = std::min(jobs, most_processes);
         jobs_each = std::max(1, jobs / processes);
-        machine = fmt::format("{}, {}", io::processor(), io::counted(cores, "core"));
     }
 
     int execute()
@@ -134,23 +117,9 @@ private:
             if (!known.contains(chapter))
                 throw io::UsageError(fmt::format("reproduce: --chapter must be one of {}, got {}",
                                                  fmt::join(known, ", "), chapter));
-        for (const Reproduction& e : reproductions()) {
-            if (!o.chapters.empty() &&
-                std::find(o.chapters.begin(), o.chapters.end(), e.chapter) == o.chapters.end())
-                continue;
-            Reproduced& r = all.emplace_back();
-            r.entry = &e;
-            for (const std::string& word : words(e)) r.command += (r.command.empty() ? "" : " ") + word;
-        }
-    }
-
-    /// The command without the options of this run
-    std::vector<std::string> words(const Reproduction& e) const
-    {
-        std::vector<std::string> all_words = {"hilda", "study", e.study};
-        for (const auto* more : {&e.arguments, mode == "quick" ? &e.quick : &e.full})
-            all_words.insert(all_words.end(), more->begin(), more->end());
-        return all_words;
+        for (const Reproduction& e : reproductions())
+            if (o.chapters.empty() || std::count(o.chapters.begin(), o.chapters.end(), e.chapter) > 0)
+                all.push_back({.entry = &e, .command = fmt::format("{}", fmt::join(e.words(o.full), " "))});
     }
 
     void open_directory()
@@ -164,44 +133,76 @@ private:
             o.output, o.force || o.resume,
             begun ? "--force overwrites it, --resume continues it" : io::force_overwrites);
         lock.emplace(o.output).create();
-        if (o.resume) others = read_record(path(record_name), o.output, mode, all);
-        write_record();
+        if (o.resume) read_record();
+        io::write_file(path(record_name), record.text());
     }
 
-    void write_record() const { io::write_file(path(record_name), record_of(all, others, mode).text()); }
+    /// Reads the record, and the results of the studies that have ended with the same command.
+    void read_record()
+    {
+        const io::Json old =
+            io::JsonSource(io::read_file(path(record_name), io::JsonSource::max_bytes), path(record_name))
+                .root;
+        const auto text_of = [](const io::Json& object, const std::string& key) -> std::string {
+            const io::Json::Member* member = object.member(key);
+            return member != nullptr && member->value.string() != nullptr ? *member->value.string() : "";
+        };
+        for (const char* key : {"mode", "version"})
+            if (const std::string its = text_of(old, key), mine = text_of(record, key); its != mine)
+                throw io::UsageError(o.output + ": --resume needs the same " + key + ": '" + its +
+                                     "' was begun, this is '" + mine + "'; --force starts again");
+        if (const io::Json::Member* ended = old.member("finished");
+            ended != nullptr && ended->value.members() != nullptr)
+            record["finished"].update(ended->value);
+        for (Reproduced& r : all) {
+            const io::Json::Member* one = record["finished"].member(r.entry->name);
+            if (one == nullptr || text_of(one->value, "command") != r.command) continue;
+            const io::Json::Member *code = one->value.member("exit_code"),
+                                   *seconds = one->value.member("seconds");
+            if (code == nullptr || code->value.number() == nullptr || seconds == nullptr ||
+                seconds->value.number() == nullptr)
+                continue;
+            r.exit_code = *code->value.number() == io::exit_code::done ? io::exit_code::done
+                                                                       : io::exit_code::expectation_failed;
+            r.seconds = *seconds->value.number();
+            read_results(r, o.output);
+        }
+    }
 
+    /// Studies that measure time run alone, at the end. The long studies are those of the last chapters: one
+    /// process of several begins with the last one, so that no long study is alone at the end.
     void run_studies()
     {
-        // Those that measure time run at the end, alone.
-        std::deque<Reproduced*> queue, timed;
-        for (Reproduced& r : all)
-            if (!has_ended(r)) (r.entry->timed ? timed : queue).push_back(&r);
-        const size_t count = queue.size() + timed.size();
+        std::deque<Reproduced*> queue;
+        for (const bool timed : {false, true})
+            for (Reproduced& r : all)
+                if (!r.has_ended() && r.entry->timed == timed) queue.push_back(&r);
+        const auto first_timed =
+            std::find_if(queue.begin(), queue.end(), [](const Reproduced* r) { return r->entry->timed; });
+        if (processes > 1 && first_timed != queue.begin())
+            std::rotate(queue.begin(), first_timed - 1, first_timed);
+        const size_t count = queue.size();
         std::vector<Running> running;
         io::ProgressLine line(o.quiet);
         bool stopped = false;
-        while (!queue.empty() || !timed.empty() || !running.empty()) {
+        while (!queue.empty() || !running.empty()) {
             if (const int signal = io::Interrupt::caught(); signal != 0 && !stopped) {
                 stopped = true;
-                queue.clear(), timed.clear();
+                queue.clear();
                 for (const Running& r : running) kill(r.process, signal);
             }
-            while (!queue.empty() && static_cast<int>(running.size()) < processes)
-                start_next(queue, running, jobs_each);
-            if (queue.empty() && running.empty() && !timed.empty()) start_next(timed, running, 1);
-            for (size_t k = 0; k < running.size();) {
-                int status = 0;
-                const pid_t found = waitpid(running[k].process, &status, WNOHANG);
-                if (found == -1 && errno == ECHILD) status = 1 << 8;  // its exit code is not known
-                if (found != running[k].process && !(found == -1 && errno == ECHILD)) {
-                    ++k;
-                    continue;
-                }
-                line.clear();
-                const Running ended = running[k];
-                running.erase(running.begin() + static_cast<std::ptrdiff_t>(k));
-                end_of(ended, status, count);
+            while (!queue.empty() &&
+                   static_cast<int>(running.size()) < (queue.front()->entry->timed ? 1 : processes)) {
+                running.push_back(start_study(*queue.front()));
+                queue.pop_front();
             }
+            std::erase_if(running, [&](const Running& r) {
+                int status = 1 << 8;  // if the exit code is not known
+                if (waitpid(r.process, &status, WNOHANG) == 0) return false;
+                line.clear();
+                end_of(r, status, count);
+                return true;
+            });
             if (line.is_due() && !running.empty()) line.show(progress(running, count));
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
@@ -216,22 +217,18 @@ private:
         return fmt::format("{} of {} studies, {:.0f} s; {}", ended_now, count, seconds_since(begin), names);
     }
 
-    /// The long studies are those of the last chapters. One process of several begins with them, so that no
-    /// long study is alone at the end.
-    void start_next(std::deque<Reproduced*>& queue, std::vector<Running>& running, int jobs) const
+    Running start_study(Reproduced& r) const
     {
-        const bool from_end = processes > 1 && running.empty();
-        Reproduced& r = from_end ? *queue.back() : *queue.front();
-        from_end ? queue.pop_back() : queue.pop_front();
         const std::string in = path(r.entry->name);
-        std::vector<std::string> command = words(*r.entry);
+        const int jobs = r.entry->timed ? 1 : jobs_each;
+        std::vector<std::string> command = r.entry->words(o.full);
         command.insert(command.end(), {"--jobs", std::to_string(jobs), "--output", in});
         if (!o.plot) command.emplace_back("--no-plot");
         if (o.resume && FinishedJobs::in(in))
             command.emplace_back("--resume");
         else if (!io::is_missing_or_empty(in))
             command.emplace_back("--force");
-        running.push_back({&r, start(std::move(command), jobs, in + ".txt", in + ".log"), Clock::now()});
+        return {&r, start(std::move(command), jobs, in + ".txt", in + ".log"), Clock::now()};
     }
 
     void end_of(const Running& ended, int status, size_t count)
@@ -241,30 +238,44 @@ private:
         r.seconds = seconds_since(ended.begin);
         read_results(r, o.output);
         ++ended_now;
-        write_record();
+        if (r.has_ended())
+            record["finished"][r.entry->name] = {
+                {"command", r.command}, {"exit_code", r.exit_code}, {"seconds", r.seconds}};
+        io::write_file(path(record_name), record.text());
         write_page();
         if (o.quiet) return;
         std::cout << fmt::format("[{:2}/{}] {}, {}: {}, {:.1f} s{}\n", ended_now, count, r.entry->name,
-                                 names_of_figures(*r.entry), r.status, r.seconds,
+                                 r.entry->figures, r.status, r.seconds,
                                  r.status == "error" ? "; " + r.message : "")
                   << std::flush;
     }
 
+    long count(const std::string& status) const
+    {
+        return std::count_if(all.begin(), all.end(), [&](const Reproduced& r) { return r.status == status; });
+    }
+
     void write_page() const
     {
-        io::write_file(path("index.html"), page(all, {.mode = mode,
-                                                      .version = version_line(),
-                                                      .machine = machine,
-                                                      .date = utc_now(),
-                                                      .seconds = seconds_since(begin)}));
+        std::string counts;
+        for (const char* status : {"passed", "failed", "error", "done", "interrupted", "not run"})
+            if (count(status) > 0)
+                counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count(status), status);
+        const std::string text =
+            page(all,
+                 {{"version", version_line()},
+                  {"machine", fmt::format("{}, {}", io::processor(), io::counted(cores, "core"))},
+                  {"date", utc_now()},
+                  {"grids",
+                   o.full ? "--full: those of the dissertation" : "--quick: reduced, as each section states"},
+                  {"result", counts},
+                  {"time", fmt::format("{:.0f} s", seconds_since(begin))}},
+                 !o.full);
+        io::write_file(path("index.html"), text);
     }
 
     int finish() const
     {
-        const auto count = [&](const std::string& status) {
-            return std::count_if(all.begin(), all.end(),
-                                 [&](const Reproduced& r) { return r.status == status; });
-        };
         if (!o.quiet)
             std::cout << fmt::format("{} passed, {} failed, {} without criterion, {} with an error; {}\n",
                                      count("passed"), count("failed"), count("done"), count("error"),
@@ -279,11 +290,12 @@ private:
     }
 
     const ReproduceOptions& o;
-    const std::string mode;
+    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     int processes = 1, jobs_each = 1;
-    std::string machine;
     std::vector<Reproduced> all;
-    io::Json::List others;  ///< finished studies of other chapters
+    /// reproduce.json: the mode, the version, and by name the studies that have ended, also of other chapters
+    io::Json record = {
+        {"mode", o.full ? "full" : "quick"}, {"version", version_line()}, {"finished", io::Json::object()}};
     std::optional<io::OutputLock> lock;
     size_t ended_now = 0;
     const Clock::time_point begin = Clock::now();

@@ -1,47 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The figures of the dissertation as studies: the list of `hilda reproduce`.
+/// The figures of the dissertation as studies, and the page of their results: see reproduce.hpp.
 
 #pragma once
 
-#include <limits>
+#include "studies/framework/acceptance.hpp"
+
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace hilda::studies {
-
-/// Acceptance criterion on a column of study.csv: least <= value <= most for all selected rows
-struct ReproductionCheck {
-    std::string what;
-    std::string column;
-    /// Columns and the values that select rows; numbers are compared as numbers
-    std::vector<std::pair<std::string, std::string>> where;
-    double least = -std::numeric_limits<double>::infinity();
-    double most = std::numeric_limits<double>::infinity();
-    /// The value is divided by that of the row with this integrator and the same problem, h and bars; "": it
-    /// is not
-    std::string relative_to = "";
-};
 
 /// A study that reproduces figures
 struct Reproduction {
     std::string name;  ///< of its directory and of its section
     int chapter = 0;
-    std::vector<std::string> figures;  ///< "3.4", "Table 4.7"
-    std::string title, shows;          ///< what the published figure shows
-    std::string study;
-    std::vector<std::string> arguments;              ///< of the study, in both modes
-    std::vector<std::string> quick = {}, full = {};  ///< further arguments of --quick and --full
-    std::string reduced = "";                        ///< what --quick leaves out; "": nothing
-    std::string page;                                ///< in docs/results
-    std::vector<ReproductionCheck> checks = {};      ///< besides those of the study (--check)
-    bool timed = false;                              ///< measures time: it runs alone
+    std::string figures;                ///< "Figs. 3.6, 3.7", "Fig. 4.18, Table 4.7"
+    std::string title, shows;           ///< what the published figure shows
+    std::string study;                  ///< its name and its arguments in both modes
+    std::string quick = "", full = "";  ///< further arguments of --quick and --full
+    std::string reduced = "";           ///< what --quick leaves out; "": nothing
+    bool timed = false;                 ///< measures time: it runs alone
+
+    /// The words of the command in one of the modes: hilda, study, its name, its arguments
+    std::vector<std::string> words(bool of_full) const;
 };
 
 /// All entries, in the order of the dissertation
 const std::vector<Reproduction>& reproductions();
 
-/// "Figs. 3.6, 3.7, 3.8", "Fig. 3.4", "Fig. 4.18, Table 4.7"
-std::string names_of_figures(const Reproduction& entry);
+/// A study of the list with its results
+struct Reproduced {
+    const Reproduction* entry = nullptr;
+    std::string command = {};        ///< "hilda study energy --end 30"
+    int exit_code = -1;              ///< of the study; -1: it has not ended
+    double seconds = 0;              ///< wall time
+    std::string status = "not run";  ///< passed, failed, done (no criterion), error, interrupted, not run
+    std::vector<Criterion> criteria = {};
+    std::vector<std::string> figures = {}, files = {};  ///< relative to the page
+    std::string text = {}, message = {};                ///< its output, and the last line of its messages
+
+    /// Whether the study has results, and is not run again by --resume
+    bool has_ended() const { return status == "passed" || status == "failed" || status == "done"; }
+};
+
+/// Reads the results of a study that has ended with this exit code from DIRECTORY/NAME, DIRECTORY/NAME.txt
+/// and DIRECTORY/NAME.log, and sets the status. io::IoError, io::InvalidInput.
+void read_results(Reproduced& of, const std::string& directory);
+
+/// The page index.html: no scripts, no files other than the figures and tables in its directory. `head`:
+/// names and values of the table at its top. `quick`: each section states what --quick leaves out.
+std::string page(const std::vector<Reproduced>& all,
+                 const std::vector<std::pair<std::string, std::string>>& head, bool quick);
+
+/// A text with the escapes of HTML
+std::string html(const std::string& text);
 
 }  // namespace hilda::studies

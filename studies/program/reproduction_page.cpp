@@ -1,16 +1,86 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/program/reproduction_page.hpp"
+/// The results of the studies of `hilda reproduce`, read from their output directories, and their page.
+#include "studies/program/reproduction.hpp"
 
-#include "io/json.hpp"
+#include "io/error.hpp"
+#include "io/files.hpp"
+#include "io/json_source.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace hilda::studies {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t most_bytes = size_t{256} << 20;  // largest file that is read [byte]
+
+/// The text of a file; empty if there is none
+std::string text_of(const std::string& file)
+{
+    std::error_code error;
+    return fs::is_regular_file(file, error) ? io::read_file(file, most_bytes) : "";
+}
+
+std::string last_line(std::string text)
+{
+    while (text.ends_with('\n')) text.pop_back();
+    return text.substr(text.rfind('\n') + 1);
+}
+
+double number_of(const io::Json& object, const char* key)
+{
+    const io::Json::Member* member = object.member(key);
+    return member != nullptr && member->value.number() != nullptr ? *member->value.number() : std::nan("");
+}
+
+/// A criterion of study.json: between `least` and `most`, or `required` with its tolerance. The bounds
+/// include the measured value if the study has accepted it, so that rounding of the bounds does not change
+/// the result.
+Criterion criterion_of(const io::Json& check)
+{
+    const io::Json::Member *what = check.member("what"), *passed = check.member("passed");
+    const double required = number_of(check, "required"), tolerance = number_of(check, "tolerance"),
+                 measured = number_of(check, "measured");
+    Criterion c = between(what != nullptr && what->value.string() != nullptr ? *what->value.string() : "",
+                          measured, number_of(check, "least"), number_of(check, "most"));
+    if (!std::isnan(required)) c.least = required - tolerance, c.most = required + tolerance;
+    if (passed != nullptr && passed->value.boolean() != nullptr && *passed->value.boolean() &&
+        !std::isnan(measured))
+        c.least = std::fmin(c.least, measured), c.most = std::fmax(c.most, measured);
+    return c;
+}
+
+/// The criteria that the study has evaluated: the key "checks" of study.json
+std::vector<Criterion> criteria_of(const std::string& file)
+{
+    const std::string text = text_of(file);
+    if (text.empty()) return {};
+    const io::JsonSource study(text, file, most_bytes);
+    std::vector<Criterion> all;
+    const io::Json::Member* checks = study.root.member("checks");
+    if (checks != nullptr && checks->value.list() != nullptr)
+        for (const io::Json& check : *checks->value.list()) all.push_back(criterion_of(check));
+    return all;
+}
+
+/// The files of a study with this ending, sorted: NAME/FILE
+std::vector<std::string> files_of(const std::string& name, const std::string& directory,
+                                  const std::string& ending)
+{
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const auto& file : fs::directory_iterator(directory + '/' + name, error))
+        if (file.is_regular_file(error) && file.path().extension() == ending)
+            files.push_back(name + '/' + file.path().filename().string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
 
 constexpr const char* style = R"(
 body { font: 15px/1.45 sans-serif; color: #222; max-width: 72em; margin: 2em auto; padding: 0 1em; }
@@ -21,113 +91,129 @@ pre { background: #f6f6f6; padding: 0.7em; overflow-x: auto; font-size: 12px; li
 img { max-width: 100%; border: 1px solid #eee; margin: 0.4em 0; display: block; }
 section { border-top: 2px solid #bbb; margin-top: 2em; }
 .passed { color: #00703c; } .failed, .error { color: #b00020; font-weight: bold; }
-.done, .interrupted, .not-run { color: #666; }
 .note { color: #555; }
 )";
 
 constexpr long most_lines = 60;  // of the text that is visible at once
 
-std::string status_of(const std::string& status)
+/// An element of the page around an HTML text
+std::string in(const std::string& tag, const std::string& text)
 {
-    std::string name = status;
-    std::replace(name.begin(), name.end(), ' ', '-');
-    return fmt::format("<span class=\"{}\">{}</span>", name, html(status));
+    return fmt::format("<{}>{}</{}>", tag, text, tag.substr(0, tag.find(' ')));
 }
+
+std::string note(const std::string& text) { return in("p class=\"note\"", text) + '\n'; }
 
 std::string link(const std::string& to, const std::string& text)
 {
-    return fmt::format("<a href=\"{}\">{}</a>", html(to), html(text));
+    return in("a href=\"" + html(to) + '"', html(text));
 }
 
-std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.8g}", value); }
+std::string status_of(const std::string& status)
+{
+    return in(fmt::format("span class=\"{}\"", status == "not run" ? "not-run" : status), status);
+}
 
-std::string time_of(const Reproduced& r) { return r.seconds > 0 ? fmt::format("{:.1f} s", r.seconds) : "-"; }
+std::string number(const std::string& text) { return in("td class=\"number\"", text); }
+std::string number(double value) { return number(std::isnan(value) ? "-" : fmt::format("{:.8g}", value)); }
 
-/// "3 of 4" criteria passed, or "-"
-std::string passed_of(const Reproduced& r)
+std::string row_of_summary(const Reproduced& r)
 {
     const auto passed =
         std::count_if(r.criteria.begin(), r.criteria.end(), [](const Criterion& c) { return c.passed(); });
-    return r.criteria.empty() ? "-" : fmt::format("{} of {}", passed, r.criteria.size());
-}
-
-std::string summary_table(const std::vector<Reproduced>& all)
-{
-    std::string out =
-        "<table>\n<tr><th>chapter</th><th>figure</th><th>study</th><th>criteria "
-        "passed</th><th>status</th><th>time</th></tr>\n";
-    for (const Reproduced& r : all)
-        out += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td></tr>\n",
-            r.entry->chapter, html(names_of_figures(*r.entry)), link('#' + r.entry->name, r.entry->title),
-            passed_of(r), status_of(r.status), time_of(r));
-    return out + "</table>\n";
+    return in("tr",
+              in("td", std::to_string(r.entry->chapter)) + in("td", html(r.entry->figures)) +
+                  in("td", link('#' + r.entry->name, r.entry->title)) +
+                  in("td", r.criteria.empty() ? "-" : fmt::format("{} of {}", passed, r.criteria.size())) +
+                  in("td", status_of(r.status)) +
+                  number(r.seconds > 0 ? fmt::format("{:.1f} s", r.seconds) : "-")) +
+           '\n';
 }
 
 std::string criteria_table(const std::vector<Criterion>& criteria)
 {
-    std::string out =
-        "<table>\n<tr><th>acceptance "
-        "criterion</th><th>measured</th><th>least</th><th>most</th><th></th></tr>\n";
+    std::string rows =
+        "\n<tr><th>acceptance criterion</th><th>measured</th><th>least</th><th>most</th><th></th></tr>\n";
     for (const Criterion& c : criteria)
-        out += fmt::format(
-            "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>"
-            "<td class=\"number\">{}</td><td>{}</td></tr>\n",
-            html(c.what), number(c.measured), number(c.least), number(c.most),
-            status_of(c.passed() ? "passed" : "failed"));
-    return out + "</table>\n";
+        rows += in("tr", in("td", html(c.what)) + number(c.measured) + number(c.least) + number(c.most) +
+                             in("td", status_of(c.passed() ? "passed" : "failed"))) +
+                '\n';
+    return in("table", rows) + '\n';
 }
 
 /// The text of the study; a long text is folded
 std::string text_block(const std::string& text)
 {
-    const std::string block = "<pre>" + html(text) + "</pre>\n";
+    const std::string block = in("pre", html(text)) + '\n';
     const long lines = std::count(text.begin(), text.end(), '\n');
     if (lines <= most_lines) return block;
-    return fmt::format("<details><summary>table, {} lines</summary>\n{}</details>\n", lines, block);
+    return in("details", in("summary", fmt::format("table, {} lines", lines)) + '\n' + block) + '\n';
 }
 
-std::string section(const Reproduced& r, const PageHead& head)
+std::string section(const Reproduced& r, bool quick)
 {
     const Reproduction& e = *r.entry;
-    std::string out = fmt::format("<section id=\"{}\">\n<h2>{}: {}</h2>\n", html(e.name),
-                                  html(names_of_figures(e)), html(e.title));
-    out += fmt::format("<p>{}</p>\n", html(e.shows));
-    out += fmt::format("<p><code>{}</code></p>\n", html(r.command));
-    out += fmt::format("<p>{}, {}.", status_of(r.status), r.seconds > 0 ? "time " + time_of(r) : "no time");
-    if (head.mode == "quick" && !e.reduced.empty())
-        out += fmt::format(" <span class=\"note\">Reduced by --quick: {}.</span>", html(e.reduced));
-    out += fmt::format(" <span class=\"note\">Discussion: docs/results/{}.</span></p>\n", html(e.page));
-    if (r.status == "error") out += fmt::format("<pre>{}</pre>\n", html(r.message));
+    std::string out = '\n' + in("h2", html(e.figures + ": " + e.title)) + '\n' + in("p", html(e.shows)) +
+                      '\n' + in("p", in("code", html(r.command))) + '\n';
+    std::string line = fmt::format("{}, {}.", status_of(r.status),
+                                   r.seconds > 0 ? fmt::format("time {:.1f} s", r.seconds) : "no time");
+    if (quick && !e.reduced.empty()) line += " Reduced by --quick: " + html(e.reduced) + '.';
+    out += in("p", line + fmt::format(" Discussion: docs/results/{}.md.", e.words(false)[2])) + '\n';
+    if (r.status == "error") out += in("pre", html(r.message)) + '\n';
     if (!r.criteria.empty())
         out += criteria_table(r.criteria);
     else if (r.status == "done")
-        out += "<p class=\"note\">This study has no acceptance criterion.</p>\n";
+        out += note("This study has no acceptance criterion.");
     for (const std::string& figure : r.figures)
         out += fmt::format("<img src=\"{}\" alt=\"{}\">\n", html(figure), html(e.title));
-    if (r.figures.empty() && (r.status == "passed" || r.status == "failed" || r.status == "done"))
-        out += fmt::format("<p class=\"note\">No figure. {}</p>\n", html(r.message));
+    if (r.figures.empty() && r.has_ended()) out += note("No figure. " + html(r.message));
     if (!r.text.empty()) out += text_block(r.text);
     std::string files;
     for (const std::string& file : r.files) files += (files.empty() ? "" : ", ") + link(file, file);
-    if (!files.empty()) out += "<p class=\"note\">Files: " + files + "</p>\n";
-    return out + "</section>\n";
+    if (!files.empty()) out += note("Files: " + files);
+    return in(fmt::format("section id=\"{}\"", e.name), out) + '\n';
 }
 
 }  // namespace
 
-std::string names_of_figures(const Reproduction& entry)
+void read_results(Reproduced& of, const std::string& directory)
 {
-    std::string numbers, others;
-    int count = 0;
-    for (const std::string& figure : entry.figures) {
-        const bool is_number = figure.find(' ') == std::string::npos;
-        std::string& to = is_number ? numbers : others;
-        to += (to.empty() ? "" : ", ") + figure;
-        count += is_number ? 1 : 0;
-    }
-    if (count > 0) numbers = (count > 1 ? "Figs. " : "Fig. ") + numbers;
-    return numbers + (numbers.empty() || others.empty() ? "" : ", ") + others;
+    const std::string &name = of.entry->name, path = directory + '/' + name;
+    of.text = text_of(path + ".txt");
+    of.message = last_line(text_of(path + ".log"));
+    of.files = files_of(name, directory, ".csv");
+    for (const std::string& file : files_of(name, directory, ".json")) of.files.push_back(file);
+    const bool has_results =
+        of.exit_code == io::exit_code::done || of.exit_code == io::exit_code::expectation_failed;
+    of.criteria = has_results ? criteria_of(path + "/study.json") : std::vector<Criterion>{};
+    of.figures = has_results ? files_of(name, directory, ".png") : std::vector<std::string>{};
+    const bool passed =
+        of.exit_code == io::exit_code::done &&
+        std::all_of(of.criteria.begin(), of.criteria.end(), [](const Criterion& c) { return c.passed(); });
+    of.status = of.exit_code >= io::exit_code::signal ? "interrupted"
+                : !has_results                        ? "error"
+                : !passed                             ? "failed"
+                : of.criteria.empty()                 ? "done"
+                                                      : "passed";
+}
+
+std::string page(const std::vector<Reproduced>& all,
+                 const std::vector<std::pair<std::string, std::string>>& head, bool quick)
+{
+    std::string facts = "\n", summary =
+                                  "\n<tr><th>chapter</th><th>figure</th><th>study</th><th>criteria "
+                                  "passed</th><th>status</th><th>time</th></tr>\n";
+    for (const auto& [name, value] : head) facts += in("tr", in("th", name) + in("td", html(value))) + '\n';
+    std::string sections;
+    for (const Reproduced& r : all) summary += row_of_summary(r), sections += section(r, quick);
+    return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>HILDA: the figures "
+           "of "
+           "the dissertation</title>\n<style>" +
+           std::string(style) + "</style>\n</head>\n<body>\n<h1>The figures of the dissertation</h1>\n" +
+           in("p",
+              "Fang, L. (2022). Each study below computes the figures of the dissertation that it names. "
+              "\"done\": the study has no acceptance criterion.") +
+           '\n' + in("table", facts) + '\n' + in("table", summary) + '\n' + sections + "</body>\n</html>\n";
 }
 
 std::string html(const std::string& text)
@@ -135,52 +221,28 @@ std::string html(const std::string& text)
     std::string out;
     for (size_t k = 0; k < text.size();) {
         const size_t length = io::utf8_length(std::string_view(text).substr(k));
-        const char c = text[k];
-        if (length == 0)
-            out += "\xEF\xBF\xBD";  // U+FFFD for a byte that is no character
-        else if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += text.substr(k, length);
+        switch (length == 0 ? '\0' : text[k]) {
+            case '\0':
+                out += "\xEF\xBF\xBD";
+                break;  // U+FFFD for a byte that is no character
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            default:
+                out += text.substr(k, length);
+        }
         k += std::max<size_t>(1, length);
     }
     return out;
-}
-
-std::string page(const std::vector<Reproduced>& all, const PageHead& head)
-{
-    const auto count = [&](const std::string& status) {
-        return std::count_if(all.begin(), all.end(), [&](const Reproduced& r) { return r.status == status; });
-    };
-    std::string counts;
-    for (const char* status : {"passed", "failed", "error", "done", "interrupted", "not run"})
-        if (count(status) > 0)
-            counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count(status), status);
-    std::string out =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<title>HILDA: the figures of the dissertation</title>\n<style>" +
-        std::string(style) + "</style>\n</head>\n<body>\n<h1>The figures of the dissertation</h1>\n";
-    out +=
-        "<p>Fang, L. (2022). Each study below computes the figures of the dissertation that it names. "
-        "\"done\": the study has no acceptance criterion.</p>\n<table>\n";
-    for (const auto& [what, value] :
-         {std::pair{"version", head.version},
-          {"machine", head.machine},
-          {"date", head.date},
-          {"grids", head.mode == "quick" ? std::string("--quick: reduced, as each section states")
-                                         : std::string("--full: those of the dissertation")},
-          {"result", counts},
-          {"time", fmt::format("{:.0f} s", head.seconds)}})
-        out += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", what, html(value));
-    out += "</table>\n" + summary_table(all);
-    for (const Reproduced& r : all) out += section(r, head);
-    return out + "</body>\n</html>\n";
 }
 
 }  // namespace hilda::studies

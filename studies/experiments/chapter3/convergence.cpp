@@ -17,6 +17,7 @@
 
 #include "dae/model_file.hpp"
 #include "lie/solver/saddle.hpp"
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/convergence_study.hpp"
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/running/diagnosis.hpp"
@@ -201,6 +202,18 @@ void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>
                "order\n";
 }
 
+/// The fitted order of each scheme, of the first quantity that has one, is the declared one within 15 %.
+std::vector<Criterion> criteria_of_orders(const std::vector<Series>& all)
+{
+    std::vector<Criterion> checks;
+    for (const Series& series : all) {
+        const Measured m = study.measured(series);
+        const int declared = series.front()->scheme->order;
+        checks.push_back(criterion("order of " + m.of, m.value.at("order"), declared, 0.15 * declared));
+    }
+    return checks;
+}
+
 /// The problems, integrators and steps that are not named on the command line
 struct Defaults {
     std::vector<std::string> problems;
@@ -277,9 +290,13 @@ void convergence(StudyContext& s)
     }
     s.table = columns.csv(runs);
     s.end_of_runs(run_pointers(runs));
+    const auto check = [&] {
+        if (s.options.check) s.evaluate(criteria_of_orders(all));
+    };
     if (short_form) {
         print_overview(all, problems, s.text);
         s.figures = {"convergence-position.png", "convergence-loads.png"};
+        check();
         return;
     }
     for (const Series& of : all) print(of, s.text);
@@ -291,12 +308,13 @@ void convergence(StudyContext& s)
         print_fits(all, c, s.text);
         s.figures.push_back("convergence-" + c.problem.name + ".png");
     }
+    check();
 }
 
 const bool registered_convergence = io::Registry<Study>::add(
     {.name = "convergence",
      .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-     .accepted = takes::reference | takes::all | takes::strict | takes::shard,
+     .accepted = takes::reference | takes::all | takes::check | takes::strict | takes::shard,
      .keys = study.keys(),
      .files = {"convergence-position.png", "convergence-loads.png", "convergence-PROBLEM.png"},
      .run = convergence});

@@ -11,6 +11,7 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "studies/experiments/chapter3/work_balance.hpp"
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/curve.hpp"
 #include "studies/framework/sweep.hpp"
 
@@ -108,6 +109,22 @@ std::vector<std::string> sources_of(const std::vector<const EnergyRun*>& runs)
     return all;
 }
 
+/// Fig. 3.5: with the double pendulum the fully implicit scheme loses energy, the half-implicit scheme does
+/// not.
+std::vector<Criterion> criteria_of_energy(const std::vector<EnergyRun>& runs)
+{
+    std::vector<Criterion> all;
+    for (const EnergyRun& run : runs) {
+        if (run.c->problem.name != "double_pendulum") continue;
+        CriteriaOf of{.of = " over the largest kinetic energy, " + run.name(), .list = all};
+        if (run.scheme->name == "rA-half-1")
+            of.between("largest change of the energy", run.largest / run.kinetic, 0, 0.01);
+        if (run.scheme->name == "rA-full-1")
+            of.between("change of the energy at the end", run.drift / run.kinetic, -1, -0.05);
+    }
+    return all;
+}
+
 constexpr size_t most_named = 8;  // sources of work that are named in the text
 
 void energy(StudyContext& s)
@@ -173,13 +190,14 @@ void energy(StudyContext& s)
     for (const EnergyRun& run : runs) curves.add({run.c->problem.name, run.scheme->name, run.h}, run.curve);
     s.files = {{"energy.csv", curves.csv()}};
     s.results(columns, runs);
+    if (s.options.check) s.evaluate(criteria_of_energy(runs));
 }
 
 const bool registered_energy = io::Registry<Study>::add(
     {.name = "energy",
      .answers = "energy over time: its drift in conservative models (Fig. 3.5), its balance with the work in "
                 "damped and driven ones",
-     .accepted = takes::strict | takes::shard,
+     .accepted = takes::check | takes::strict | takes::shard,
      .keys = {"end_drift", "max_drift", "max_drift_relative", "end_balance", "max_balance",
               "max_balance_relative"},
      .files = {"energy.csv", "energy-PROBLEM.png"},

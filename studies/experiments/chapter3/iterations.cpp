@@ -5,6 +5,7 @@
 /// have the same Newton tolerance, in the same units. iterations.csv contains mean and maximum over short
 /// time intervals. Schemes without Newton iterations count zero.
 
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/sweep.hpp"
 
 #include <fmt/format.h>
@@ -98,6 +99,25 @@ std::string over_time(const std::vector<IterationsRun>& runs)
     return table.csv();
 }
 
+/// Figs. 3.9, 3.11-3.13: the half-implicit scheme needs fewer iterations than the fully implicit one with
+/// large steps, and the second-order scheme as many as that of first order.
+std::vector<Criterion> criteria_of_iterations(const std::vector<IterationsRun>& runs)
+{
+    std::vector<Criterion> all;
+    const auto ratio = [&](const char* scheme, const char* to, double h, double least, double most) {
+        for (const IterationsRun& run : runs)
+            for (const IterationsRun& other : runs)
+                if (run.scheme->name == scheme && other.scheme->name == to && run.c == other.c &&
+                    run.h == other.h && run.h >= h)
+                    all.push_back(
+                        between("iterations over those of " + other.scheme->name + ", " + run.name(),
+                                run.mean() / other.mean(), least, most));
+    };
+    ratio("rA-half-1", "rA-full-1", 1e-2, 0.7, 1);
+    ratio("rA-half-2", "rA-half-1", 0, 0.95, 1.05);
+    return all;
+}
+
 void iterations(StudyContext& s)
 {
     const std::vector<double> steps = s.steps({1e-2, 1e-3, 1e-4});
@@ -124,12 +144,13 @@ void iterations(StudyContext& s)
     s.files = {{"iterations.csv", over_time(runs)}};
     s.results(columns, runs);
     for (size_t k = 0; k < runs.size(); ++k) s.measured[k].value["iterations"] = runs[k].mean();
+    if (s.options.check) s.evaluate(criteria_of_iterations(runs));
 }
 
 const bool registered_iterations = io::Registry<Study>::add(
     {.name = "iterations",
      .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
-     .accepted = takes::strict | takes::shard,
+     .accepted = takes::check | takes::strict | takes::shard,
      .keys = {"iterations", "max_iterations"},
      .files = {"iterations.csv", "iterations-PROBLEM.png"},
      .run = iterations});

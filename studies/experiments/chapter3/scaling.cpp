@@ -148,16 +148,17 @@ void scaling(StudyContext& s)
     for (const ScalingRun& run : runs)
         if (run.scheme->name != baseline)
             s.measured.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
+    if (s.options.check) s.evaluate(criteria_of_times(runs));
 }
 
-const bool registered_scaling =
-    io::Registry<Study>::add({.name = "scaling",
-                              .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-                              .accepted = takes::repeats | takes::bars | takes::seed | takes::strict,
-                              .lacking = lacks::problem,
-                              .keys = {"exponent", "largest_exponent", "ratio_to_full"},
-                              .files = {"scaling.png"},
-                              .run = scaling});
+const bool registered_scaling = io::Registry<Study>::add(
+    {.name = "scaling",
+     .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+     .accepted = takes::repeats | takes::bars | takes::check | takes::seed | takes::strict,
+     .lacking = lacks::problem,
+     .keys = {"exponent", "largest_exponent", "ratio_to_full"},
+     .files = {"scaling.png"},
+     .run = scaling});
 
 }  // namespace
 

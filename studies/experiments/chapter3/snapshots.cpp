@@ -12,6 +12,7 @@
 #include "dae/constraints/dp2.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/sweep.hpp"
 #include "studies/running/frames/model_frames.hpp"
 #include "studies/running/frames/tables.hpp"
@@ -77,6 +78,25 @@ void compute(SnapshotRun& run, const lie::Settings& settings)
     run.tables = snapshot_tables(frames.snapshots, run.c->problem.name, bodies, contacts, shown);
 }
 
+/// Table 3.1
+std::vector<Criterion> criteria_of_mechanisms(const std::vector<SnapshotRun>& runs)
+{
+    struct Published {
+        const char* problem;
+        int rows, degrees_of_freedom;
+    };
+    std::vector<Criterion> all;
+    for (const Published& p :
+         {Published{"double_pendulum", 10, 2}, {"slider_crank", 18, 0}, {"four_link", 18, 0}})
+        for (const SnapshotRun& run : runs) {
+            if (run.c->problem.name != p.problem) continue;
+            CriteriaOf of{.of = std::string(", ") + p.problem, .list = all};
+            of.equals("constraint rows", run.rows(), p.rows, 0);
+            of.equals("degrees of freedom", run.degrees_of_freedom, p.degrees_of_freedom, 0);
+        }
+    return all;
+}
+
 void draw_snapshots(StudyContext& s)
 {
     const bool mechanisms = s.options.problems.empty();
@@ -115,13 +135,14 @@ void draw_snapshots(StudyContext& s)
     }
     s.files = snapshot_files("", tables);
     s.results(columns, runs);
+    if (s.options.check) s.evaluate(criteria_of_mechanisms(runs));
 }
 
 const bool registered_snapshots = io::Registry<Study>::add(
     {.name = "snapshots",
      .answers = "pictures of models at four times: bodies, joints, paths (Fig. 3.3); bodies and constraints "
                 "(Table 3.1)",
-     .accepted = takes::strict | takes::shard,
+     .accepted = takes::check | takes::strict | takes::shard,
      .keys = {"bodies", "CD", "DP1", "DP2", "D", "other_rows", "rows", "degrees_of_freedom"},
      .files = {"poses.csv", "contacts.csv", "shapes.json", "snapshots-PROBLEM.png"},
      .run = draw_snapshots});

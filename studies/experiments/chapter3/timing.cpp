@@ -67,12 +67,13 @@ void timing(StudyContext& s)
     s.results(columns, runs);
     for (size_t k = 0; k < runs.size(); ++k)
         if (runs[k].scheme->name == timed_baseline) s.measured[k].value.erase("ratio_to_full");
+    if (s.options.check) s.evaluate(criteria_of_times(runs));
 }
 
 const bool registered_timing =
     io::Registry<Study>::add({.name = "timing",
                               .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
-                              .accepted = takes::repeats | takes::strict,
+                              .accepted = takes::repeats | takes::check | takes::strict,
                               .keys = {"us_per_step", "ratio_to_full"},
                               .files = {"timing.png"},
                               .run = timing});

@@ -14,6 +14,7 @@
 ///         may exceed the number of degrees of freedom.
 
 #include "studies/experiments/chapter8/method.hpp"
+#include "studies/framework/acceptance.hpp"
 #include "studies/framework/sweep.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
@@ -297,12 +298,19 @@ void contact_methods(StudyContext& s)
                                   {{"error", run.largest_error}}});
     }
     s.table = columns.csv(runs);
+    std::vector<Criterion> checks;
+    for (const MethodRun& run : runs)
+        if (run.part == "bowl" && run.method == "evolving" && run.h == 1e-2)
+            checks.push_back(between("position error of evolving contact, bowl, h = 0.01 s [m]",
+                                     run.largest_error, 0, 1e-4));
+    if (s.options.check) s.evaluate(checks);
 }
 
 const bool registered_contact_methods = io::Registry<Study>::add(
     {.name = "contact-methods",
      .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
                 "number of contacts (Sec. 8.2)",
+     .accepted = takes::check,
      .lacking = lacks::models | lacks::steps | lacks::end,
      .keys = {"error"},
      .files = {"contact-methods-PART.png"},

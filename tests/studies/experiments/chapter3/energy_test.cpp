@@ -151,3 +151,31 @@ TEST_CASE("with --strict a study with a warning about a run ends with exit code 
               .code == 0);
     CHECK(call(in, {"study", "friction", "--strict"}).code == 2);
 }
+
+TEST_CASE("--check compares the studies of Chapter 3 with the statements of the dissertation",
+          "[studies][energy]")
+{
+    const Scratch in;
+    const std::vector<std::string> energy = {"study", "energy", "--check", "--problem", "double_pendulum"};
+    const auto checks = [&](const std::vector<std::string>& study, int code, const std::string& result) {
+        const Ended ended = call(in, with(study, {"--no-plot", "--force", "--output", "a"}));
+        CAPTURE(ended.out, ended.err);
+        CHECK(ended.code == code);
+        CHECK_THAT(ended.out, Contains('\n' + result + '\n'));
+        CHECK(nlohmann::json::parse(read(in / "a/study.json")).contains("checks"));
+    };
+    checks(with(energy, {"--integrator", "rA-full-1,rA-half-1"}), 0, "2 of 2 passed");
+    // after 1 s the fully implicit scheme has lost 1 % of the energy
+    checks(with(energy, {"--integrator", "rA-full-1,rA-half-1", "--end", "1"}), 6, "1 of 2 passed");
+    checks({"study", "snapshots", "--check"}, 0, "6 of 6 passed");
+    checks({"study", "iterations", "--check", "--integrator", "rA-full-1,rA-half-1,rA-half-2", "--steps",
+            "1e-2"},
+           0, "6 of 6 passed");
+    checks({"study", "convergence", "--check", "--problem", "double_pendulum,four_link", "--integrator",
+            "rA-half-1,rA-half-2", "--steps", "4e-3,2e-3,1e-3"},
+           0, "4 of 4 passed");
+    checks({"study", "timing", "--check", "--integrator", "rA-half-1", "--steps", "1e-2", "--repeats", "1"},
+           6,
+           "0 of 3 passed");  // without rA-full-1 there is no ratio
+    checks({"study", "contact-methods", "--check", "--problem", "bowl"}, 0, "1 of 1 passed");
+}

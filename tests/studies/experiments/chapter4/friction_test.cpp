@@ -93,10 +93,10 @@ TEST_CASE("the friction study suggests the nearest name for an unknown experimen
     const Ended ended = call(in, {"study", "friction", "--problem", "brik"});
     CHECK(ended.code == 2);
     CHECK(ended.err == "hilda: error: study friction: unknown experiment 'brik'; did you mean 'brick'?\n");
-    const Ended unused = call(in, {"study", "energy", "--check"});
+    const Ended unused = call(in, {"study", "long-time", "--check"});
     CHECK(unused.code == 2);
-    CHECK_THAT(unused.err,
-               Contains("--check is for ") && Contains(" friction, ") && Contains("incline-sweep, stacking"));
+    CHECK_THAT(unused.err, Contains("--check is for ") && Contains(" friction, ") &&
+                               Contains("incline-sweep, iterations"));
 }
 
 TEST_CASE("the snapshots of the friction study are those of the dissertation", "[studies][friction]")

@@ -127,7 +127,7 @@ hilda_install_headers(
         granular/mesh/mesh_file.hpp granular/mesh/mesh_shapes.hpp
         granular/world/boundary_drawing.hpp granular/world/double_world.hpp granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
     # parts of the solvers, and what includes headers of GSL
-    EXCEPT studies/running/tables/hdf5_file.hpp studies/running/tables/hdf5_storage.hpp lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
+    EXCEPT lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
     DESTINATION "${hilda_package_dir}")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Loads hilda-hdf5.so (hdf5.cpp, hdf5_file.cpp and hdf5_storage.cpp) where --format hdf5 asks for it.
+/// Loads hilda-hdf5.so (hdf5.cpp) where --format hdf5 asks for it.
 ///
 /// The program is not linked with HDF5: on Debian 12 the library loads 33 others, among them libcurl and
 /// Kerberos, and every call of the program would start 16 ms later.

@@ -4,9 +4,20 @@
 #include "io/nearest.hpp"
 #include "studies/running/sink.hpp"
 
+#include <cstdio>
+#include <filesystem>
+
 namespace hilda::studies {
 
 namespace {
+
+/// Removes what a killed run has left: run.h5.TABLE.N.rows and run.h5.tmp.
+void remove_rows(const std::string& directory)
+{
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(directory, error))
+        if (file.path().filename().string().starts_with("run.h5.")) std::remove(file.path().c_str());
+}
 
 void check_format(const std::string& option, const std::string& text) { table_format(option, text); }
 
@@ -18,7 +29,8 @@ const bool registered_run_table = io::Registry<SinkType>::add(
                   .help = "format of the tables: CSV files, or one HDF5 file run.h5; default: csv",
                   .check = check_format}},
      .make = [](const RunSetup&) -> std::unique_ptr<io::Sink<RunNode>> { return nullptr; },
-     .files = {"run.h5", "run.h5.journal"}});
+     .files = {"run.h5"},
+     .remove = remove_rows});
 
 }  // namespace
 

@@ -18,6 +18,7 @@
 
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <set>
 
@@ -29,7 +30,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// The process is killed before this call of pwrite, fdatasync or unlink, counted from 1; 0: never
+/// The process is killed before this call of one of the functions below, counted from 1; 0: never
 long kill_at = 0;
 
 void count_call()
@@ -40,20 +41,26 @@ void count_call()
 }  // namespace
 
 // Definitions that take precedence over those of the C library
+extern "C" ssize_t write(int descriptor, const void* bytes, size_t count)
+{
+    count_call();
+    return syscall(SYS_write, descriptor, bytes, count);
+}
 extern "C" ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t at)
 {
     count_call();
     return syscall(SYS_pwrite64, descriptor, bytes, count, at);
 }
-extern "C" int fdatasync(int descriptor)
+extern "C" int rename(const char* from, const char* to) noexcept
 {
     count_call();
-    return static_cast<int>(syscall(SYS_fdatasync, descriptor));
+    return static_cast<int>(syscall(SYS_rename, from, to));
 }
-extern "C" int unlink(const char* path) noexcept
+extern "C" int remove(const char* path) noexcept
 {
     count_call();
-    return static_cast<int>(syscall(SYS_unlink, path));
+    const long removed = syscall(SYS_unlink, path);
+    return static_cast<int>(removed != 0 && errno == EISDIR ? syscall(SYS_rmdir, path) : removed);
 }
 
 namespace {
@@ -345,31 +352,66 @@ TEST_CASE("hilda plot draws the figure of run.h5, and says so if Python has no h
     CHECK(std::count(missing.err.begin(), missing.err.end(), '\n') == 1);
 }
 
-// The child process is killed at each place of its writing, in turn.
-TEST_CASE("a file killed at any write is readable, and continues from the checkpoint", "[studies][hdf5]")
+// The child process is killed at each place of its writing, in turn: in a new run, and in one that continues
+// a complete run.
+TEST_CASE("after a kill at any write run.h5 is complete or absent, and the run continues from the checkpoint",
+          "[studies][hdf5]")
 {
     const Scratch in;
-    const auto checkpoint = [&](studies::RunTable& table) {
-        table.sync();
-        io::Archive a;
-        table.transfer(a);
-        io::write_file((in / "checkpoint").string(), a.bytes());
+    const auto open_tables = [&] {
+        const auto tables = studies::hdf5_tables(in.path.string(), {{"program", "test"}});
+        return std::array{tables->table("a", two_columns), tables->table("b", two_columns)};
     };
-    const std::vector<long> ends = {0, 100, 5000, 9000, 13000};
-    int killed = 0;
+    const auto save = [&](const auto& tables) {
+        io::Archive all;
+        for (const auto& table : tables) {
+            table->sync();
+            table->transfer(all);
+        }
+        io::write_file((in / "checkpoint").string(), all.bytes());
+    };
+    // Continues from the checkpoint, if there is one, up to each of these numbers of rows in turn.
+    const auto run = [&](const std::vector<long>& ends) {
+        const auto tables = open_tables();
+        long rows = 0;
+        if (fs::exists(in / "checkpoint")) {
+            const std::string bytes = read(in / "checkpoint");
+            std::array<std::uint64_t, 2> numbers{};  // of the first table: rows in run.h5, rows after them
+            std::memcpy(numbers.data(), bytes.data(), sizeof numbers);
+            rows = static_cast<long>(numbers[0] + numbers[1]);
+            io::Archive all(bytes, "checkpoint");
+            for (const auto& table : tables) table->transfer(all);
+            all.end();
+        } else {
+            for (const auto& table : tables) table->open();
+        }
+        for (const long end : ends) {
+            for (const auto& table : tables) add_rows(*table, rows, end);
+            rows = std::max(rows, end);
+            save(tables);
+        }
+        for (const auto& table : tables) table->close();
+    };
+    const auto check_rows = [&](size_t rows) {
+        for (const auto& [name, columns] : tables_of(in / "run.h5")) {
+            REQUIRE(columns[0].values.size() == rows);
+            size_t different = 0;
+            for (size_t n = 0; n < rows; ++n)
+                different += columns[0].values[n] != 0.1 * static_cast<double>(n) ||
+                             columns[1].values[n] != static_cast<double>(n * n);
+            REQUIRE(different == 0);
+        }
+    };
+    const bool continues = GENERATE(false, true);
+    long killed = 0;
     for (long call = 1;; ++call) {
-        fs::remove(in / "checkpoint"), fs::remove(in / "run.h5"), fs::remove(in / "run.h5.journal");
+        CAPTURE(continues, call);
+        for (const auto& file : fs::directory_iterator(in.path)) fs::remove(file);
+        if (continues) run({5000});
         const pid_t child = fork();
         if (child == 0) {
             kill_at = call;
-            const auto table =
-                studies::hdf5_tables(in.path.string(), {{"program", "test"}})->table("a", two_columns);
-            table->open();
-            for (size_t k = 1; k < ends.size(); ++k) {
-                add_rows(*table, ends[k - 1], ends[k]);
-                checkpoint(*table);
-            }
-            table->close();
+            run({100, 6000, 9000, 13000});
             _exit(0);
         }
         int status = 0;
@@ -380,35 +422,19 @@ TEST_CASE("a file killed at any write is readable, and continues from the checkp
         }
         REQUIRE(WTERMSIG(status) == SIGKILL);
         ++killed;
-        CAPTURE(call);
-        const auto table =
-            studies::hdf5_tables(in.path.string(), {{"program", "test"}})->table("a", two_columns);
-        long rows = 0;
-        if (fs::exists(in / "checkpoint")) {
-            const std::string bytes = read(in / "checkpoint");
-            // A killed process leaves a file that other programs can read, except within the replacement of
-            // metadata.
-            if (!fs::exists(in / "run.h5.journal")) CHECK(tables_of(in / "run.h5").at("a").size() == 2);
-            std::uint64_t numbers[3];  // chunk, rows in full chunks, rows after them
-            std::memcpy(numbers, bytes.data(), sizeof numbers);
-            rows = static_cast<long>(numbers[1] + numbers[2]);
-            io::Archive a(bytes, "checkpoint");
-            table->transfer(a);
-            a.end();
+        if (fs::exists(in / "run.h5")) {
+            const size_t rows = tables_of(in / "run.h5").at("a")[0].values.size();
+            CHECK((rows == 13000 || (continues && rows == 5000)));
+            check_rows(rows);
         } else {
-            table->open();
+            CHECK_FALSE(continues);
         }
-        add_rows(*table, rows, ends.back());
-        table->close();
-        const Columns columns = tables_of(in / "run.h5").at("a");
-        REQUIRE(columns[0].values.size() == static_cast<size_t>(ends.back()));
-        size_t different = 0;
-        for (size_t n = 0; n < columns[0].values.size(); ++n)
-            different += columns[0].values[n] != 0.1 * static_cast<double>(n) ||
-                         columns[1].values[n] != static_cast<double>(n * n);
-        REQUIRE(different == 0);
+        run({13000});
+        check_rows(13000);
+        for (const auto& file : fs::directory_iterator(in.path))
+            CHECK((file.path().filename() == "run.h5" || file.path().filename() == "checkpoint"));
     }
-    CHECK(killed > 40);
+    CHECK(killed > 30);
 }
 
 TEST_CASE("a full disk, a read-only folder and a damaged run.h5 are reported in one line", "[studies][hdf5]")
@@ -416,13 +442,19 @@ TEST_CASE("a full disk, a read-only folder and a damaged run.h5 are reported in 
     const Scratch in;
     const std::vector<std::string> run = {"run",  "slider_crank", "--step",   "1e-4", "--interval",
                                           "1e-4", "--quiet",      "--format", "hdf5", "--output"};
-    for (const long bytes : {6000L, 50000L, 400000L}) {
+    // the last one: the rows fit, and run.h5 does not
+    for (const auto& [bytes, end] : {std::pair{6000L, "2"}, {50000L, "2"}, {400000L, "2"}, {8000L, "1e-3"}}) {
         CAPTURE(bytes);
-        const Ended full = call(in, with(run, {"a", "--end", "2", "--force"}), {.file_bytes = bytes});
+        const Ended full = call(in, with(run, {"a", "--end", end, "--force"}), {.file_bytes = bytes});
         CHECK(full.code == 5);
         CHECK_THAT(full.err, Contains("hilda: error: a/run.h5") && Contains("File too large"));
         CHECK(std::count(full.err.begin(), full.err.end(), '\n') == 1);
+        CHECK_FALSE(fs::exists(in / "a/run.h5"));
+        CHECK_FALSE(fs::exists(in / "a/run.h5.tmp"));
     }
+    CHECK(fs::exists(in / "a/run.h5.trajectory.0.rows"));
+    require_success(call(in, {"run", "slider_crank", "--end", "0.1", "--quiet", "--force", "--output", "a"}));
+    CHECK_FALSE(fs::exists(in / "a/run.h5.trajectory.0.rows"));
     fs::create_directories(in / "b/run.h5/x");
     const Ended folder = call(in, with(run, {"b", "--force"}));
     CHECK(folder.code == 5);
@@ -437,7 +469,7 @@ TEST_CASE("a full disk, a read-only folder and a damaged run.h5 are reported in 
     fs::remove(in / "c/run.h5");
     const Ended missing = call(in, with(run, {"c", "--end", "0.2", "--resume"}));
     CHECK(missing.code == 5);
-    CHECK_THAT(missing.err, Contains("hilda: error: c/run.h5: cannot be written: No such file"));
+    CHECK_THAT(missing.err, Contains("hilda: error: c/run.h5: cannot be read: No such file"));
     write(in / "c/run.h5", bytes);
     require_success(call(in, with(run, {"c", "--end", "0.2", "--resume"})));
 }

@@ -1,127 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/running/latex.hpp"
 
-#include "io/formats/characters.hpp"
-
 #include <algorithm>
-#include <cctype>
 #include <map>
-#include <string_view>
+#include <regex>
+#include <sstream>
 
 namespace hilda::studies {
 
 namespace {
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
-
-/// The parts of an unsigned number at the beginning of a text
-struct Number {
-    std::string_view mantissa, exponent;  ///< "1.5" and "-03"; no exponent: ""
-    size_t length = 0;                    ///< 0: the text does not begin with a number
-};
-
-Number number_at(std::string_view text)
+/// 1.5 and -03 as 1.5\times10^{-3}; without exponent the mantissa
+std::string number(const std::string& mantissa, const std::string& exponent)
 {
-    size_t k = 0;
-    const auto digits = [&] {
-        while (k < text.size() && io::is_digit(text[k])) ++k;
-    };
-    digits();
-    if (k == 0) return {};
-    if (k + 1 < text.size() && text[k] == '.' && io::is_digit(text[k + 1])) ++k, digits();
-    Number number{text.substr(0, k), {}, k};
-    if (k < text.size() && text[k] == 'e') {
-        size_t begin = ++k;
-        if (k < text.size() && (text[k] == '-' || text[k] == '+')) ++k;
-        const size_t first = k;
-        digits();
-        if (k > first) number.exponent = text.substr(begin, k - begin), number.length = k;
+    return exponent.empty() ? mantissa : mantissa + "\\times10^{" + std::to_string(std::stoi(exponent)) + '}';
+}
+
+/// A whole cell that is a number with an optional bound, sign and mark, such as "+42.5", "<= 0.85",
+/// "1.2e-04*"; otherwise ""
+std::string number_cell(const std::string& cell)
+{
+    static const std::regex form(R"((<= )?([-+]?)(\d+(?:\.\d+)?)(?:e([-+]?\d{1,3}))?([* ]?))");
+    std::smatch m;
+    if (!std::regex_match(cell, m, form)) return {};
+    return '$' + std::string(m[1].matched ? "\\le " : "") + m[2].str() + number(m[3], m[4]) + '$' +
+           (m[5] == "*" ? "*" : "");
+}
+
+/// LaTeX of characters that are not written as themselves
+std::map<std::string, std::string> characters()
+{
+    std::map<std::string, std::string> all = {{"\\", "\\textbackslash{}"},
+                                              {"~", "\\textasciitilde{}"},
+                                              {"^", "\\textasciicircum{}"},
+                                              {"\"", "''"},
+                                              {"\u0304", ""}};
+    for (const char c : std::string("_%&#${}")) all[{c}] = std::string("\\") + c;
+    for (const char c : std::string("<>|")) all[{c}] = std::string("$") + c + '$';
+    std::istringstream text("– -- — --- … \\dots{}"),
+        math(
+            "α \\alpha β \\beta γ \\gamma Δ \\Delta η \\eta θ \\theta Θ \\Theta λ \\lambda μ \\mu µ \\mu ν "
+            "\\nu "
+            "ρ \\rho σ \\sigma Φ \\Phi Ψ \\Psi ω \\omega π \\pi ε \\varepsilon ° ^\\circ ² ^2 ³ ^3 · \\cdot "
+            "± \\pm ≤ \\le ≥ \\ge ‖ \\| ṙ \\dot{r}");
+    for (std::string character, command; text >> character >> command;) all[character] = command;
+    for (std::string character, command; math >> character >> command;) all[character] = '$' + command + '$';
+    return all;
+}
+
+/// A text without numbers
+std::string escaped(const std::string& text)
+{
+    static const std::map<std::string, std::string> known = characters();
+    std::string out;
+    for (size_t k = 0, length = 0; k < text.size(); k += length) {
+        const auto first = static_cast<unsigned char>(text[k]);
+        length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+        const std::string character = text.substr(k, length);
+        const bool latin = first >= 0xC3 && first <= 0xC5;  // accented letters, which pdflatex reads
+        if (const auto found = known.find(character); found != known.end())
+            out += found->second;
+        else if (first < 0x20 || first == 0x7F)
+            out += ' ';
+        else
+            out += first < 0x80 || latin ? character : "?";
     }
-    return number;
-}
-
-std::string math(const Number& number)
-{
-    if (number.exponent.empty()) return std::string(number.mantissa);
-    const int exponent = std::stoi(std::string(number.exponent));
-    return std::string(number.mantissa) + "\\times10^{" + std::to_string(exponent) + "}";
-}
-
-/// A whole cell that is a number with an optional sign, a bound and a mark, such as "+42.5", "<= 0.85",
-/// "1.2e-04*"
-std::string number_cell(std::string_view cell)
-{
-    std::string before;
-    if (cell.starts_with("<= ")) before = "\\le ", cell.remove_prefix(3);
-    if (!cell.empty() && (cell.front() == '-' || cell.front() == '+'))
-        before += cell.front(), cell.remove_prefix(1);
-    const Number number = number_at(cell);
-    const std::string_view mark = cell.substr(std::min(number.length, cell.size()));
-    if (number.length == 0 || !(mark.empty() || mark == "*" || mark == " ")) return {};
-    return '$' + before + math(number) + '$' + (mark == "*" ? "*" : "");
-}
-
-/// LaTeX of the UTF-8 character at the beginning of a text, and its length
-std::pair<std::string, size_t> character(std::string_view text)
-{
-    static const std::map<std::string_view, std::string> known = {
-        {"\\", "\\textbackslash{}"},
-        {"_", "\\_"},
-        {"%", "\\%"},
-        {"&", "\\&"},
-        {"#", "\\#"},
-        {"$", "\\$"},
-        {"{", "\\{"},
-        {"}", "\\}"},
-        {"~", "\\textasciitilde{}"},
-        {"^", "\\textasciicircum{}"},
-        {"<", "$<$"},
-        {">", "$>$"},
-        {"|", "$|$"},
-        {"\n", " "},
-        {"\"", "''"},
-        {"α", "$\\alpha$"},
-        {"β", "$\\beta$"},
-        {"γ", "$\\gamma$"},
-        {"Δ", "$\\Delta$"},
-        {"η", "$\\eta$"},
-        {"θ", "$\\theta$"},
-        {"Θ", "$\\Theta$"},
-        {"λ", "$\\lambda$"},
-        {"μ", "$\\mu$"},
-        {"µ", "$\\mu$"},
-        {"ν", "$\\nu$"},
-        {"ρ", "$\\rho$"},
-        {"σ", "$\\sigma$"},
-        {"Φ", "$\\Phi$"},
-        {"Ψ", "$\\Psi$"},
-        {"ω", "$\\omega$"},
-        {"π", "$\\pi$"},
-        {"ε", "$\\varepsilon$"},
-        {"°", "$^\\circ$"},
-        {"²", "$^2$"},
-        {"³", "$^3$"},
-        {"·", "$\\cdot$"},
-        {"±", "$\\pm$"},
-        {"≤", "$\\le$"},
-        {"≥", "$\\ge$"},
-        {"–", "--"},
-        {"—", "---"},
-        {"…", "\\dots{}"},
-        {"‖", "$\\|$"},
-        {"ṙ", "$\\dot r$"},
-        {"\u0304", ""}};  // the last one: a combining bar
-    const auto first = static_cast<unsigned char>(text.front());
-    const size_t length = std::min<size_t>(text.size(), first < 0x80   ? 1
-                                                        : first < 0xE0 ? 2
-                                                        : first < 0xF0 ? 3
-                                                                       : 4);
-    const auto found = known.find(text.substr(0, length));
-    if (found != known.end()) return {found->second, length};
-    const bool latin = first >= 0xC3 && first <= 0xC5;  // accented letters, which pdflatex reads
-    if (first >= 0x80 && !latin) return {"?", length};
-    if (first < 0x20 || first == 0x7F) return {" ", length};
-    return {std::string(text.substr(0, length)), length};
+    return out;
 }
 
 }  // namespace
@@ -130,54 +74,38 @@ std::string latex(const std::string& text)
 {
     if (text == "-") return "--";
     if (std::string cell = number_cell(text); !cell.empty()) return cell;
-    std::string out;
-    for (size_t k = 0; k < text.size();) {
-        const std::string_view rest = std::string_view(text).substr(k);
-        const Number number = k > 0 && is_word(text[k - 1]) ? Number{} : number_at(rest);
-        const bool ends =
-            number.length == rest.size() || (number.length > 0 && !is_word(rest[number.length]));
-        if (number.length > 0 && !number.exponent.empty() && ends) {
-            out += '$' + math(number) + '$';
-            k += number.length;
-            continue;
-        }
-        const auto [written, length] = character(rest);
-        out += written;
-        k += length;
-    }
-    return out;
+    static const std::regex form(R"((^|[^\w.])(\d+(?:\.\d+)?)e([-+]?\d{1,3})(?![\w.]))");
+    std::string out, rest = text;
+    for (std::smatch m; std::regex_search(rest, m, form); rest = m.suffix())
+        out += escaped(m.prefix().str() + m[1].str()) + '$' + number(m[2], m[3]) + '$';
+    return out + escaped(rest);
 }
 
 std::string latex_table(const std::vector<std::vector<std::string>>& rows, const std::string& caption,
                         const std::string& label)
 {
     const size_t columns = rows.front().size();
-    std::string alignment;
-    for (size_t c = 0; c < columns; ++c)
-        alignment += rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(),
-                                                    [c](const auto& row) {
-                                                        return row[c].empty() || row[c] == "-" ||
-                                                               !number_cell(row[c]).empty();
-                                                    })
-                         ? 'r'
-                         : 'l';
-    constexpr size_t wide = 8;  // such a table is set in a smaller size
-    std::string out = "\\begin{table}\n  \\centering\n" +
-                      std::string(columns < wide ? "" : "  \\footnotesize\\setlength{\\tabcolsep}{3pt}\n") +
-                      "  \\caption{" + latex(caption) + "}\n  \\label{tab:" + label +
-                      "}\n  \\begin{tabular}{" + alignment + "}\n    \\toprule\n";
-    for (size_t r = 0; r < rows.size(); ++r) {
-        out += "    ";
-        for (size_t c = 0; c < columns; ++c) {
-            std::string cell = latex(rows[r][c]);
-            // after \\ and a rule, [ and * would be read as their arguments
-            if (c == 0 && (cell.starts_with('[') || cell.starts_with('*'))) cell = "{}" + cell;
-            out += (c == 0 ? "" : " & ") + cell;
-        }
-        out += " \\\\\n";
-        if (r == 0) out += "    \\midrule\n";
+    std::string alignment, lines;
+    for (size_t c = 0; c < columns; ++c) {
+        const auto is_number = [c](const auto& row) {
+            return row[c].empty() || row[c] == "-" || !number_cell(row[c]).empty();
+        };
+        alignment += rows.size() > 1 && std::all_of(rows.begin() + 1, rows.end(), is_number) ? 'r' : 'l';
     }
-    return out + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+    for (const std::vector<std::string>& row : rows) {
+        for (size_t c = 0; c < columns; ++c) {
+            const std::string cell = latex(row[c]);
+            // after \\ and a rule, [ and * would be read as their arguments
+            const bool protect = c == 0 && (cell.starts_with('[') || cell.starts_with('*'));
+            lines += (c == 0 ? "    " : " & ") + (protect ? "{}" + cell : cell);
+        }
+        lines += &row == rows.data() ? " \\\\\n    \\midrule\n" : " \\\\\n";
+    }
+    constexpr size_t wide = 8;  // such a table is set in a smaller size
+    return "\\begin{table}\n  \\centering\n" +
+           std::string(columns < wide ? "" : "  \\footnotesize\\setlength{\\tabcolsep}{3pt}\n") +
+           "  \\caption{" + latex(caption) + "}\n  \\label{tab:" + label + "}\n  \\begin{tabular}{" +
+           alignment + "}\n    \\toprule\n" + lines + "    \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
 }
 
 }  // namespace hilda::studies

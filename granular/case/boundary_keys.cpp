@@ -137,17 +137,7 @@ std::vector<NamedBoundary> read_body_of_parts(ObjectReader& o, NamedBoundary bod
     return {body};
 }
 
-const std::vector<std::string> common = {"boundary_keys"}, of_body = {"boundary_keys", "body_keys"};
-
-/// The key r; `point` is what it is the position of
-io::KeySchema place(const std::string& point)
-{
-    return {"r",
-            point +
-                " [m], in the global frame; numbers or formulas in t. With formulas, the boundary is at r(t) "
-                "after every step.",
-            R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"};
-}
+const std::vector<std::string> common = {"boundary_keys"};
 
 io::KeySchema axis(const std::string& text)
 {
@@ -172,10 +162,10 @@ const bool registered_boundary_keys =
     io::Registry<BoundaryType>::add(
         {"plane",
          {.description = "Plane. The particles are on the side to which the normal points.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = {{"normal", "Normal towards the particles [-], in the global frame.",
                     R"("$ref": "#/$defs/direction", "examples": [[0, 0, 1]])", true},
-                   place("A point of the plane")},
+                   place_key("A point of the plane")},
           .example = R"("name": "lid", "normal": [0, 0, -1], "r": [0, 0, 0.03], "mass": 0.01,
                         "free": [false, false, true])"},
          read_plane}) &&
@@ -205,16 +195,16 @@ const bool registered_boundary_keys =
     io::Registry<BoundaryType>::add(
         {"cylinder",
          {.description = "Circular cylinder, infinite or with a length.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = with_length({axis("Direction of the axis [-], in the global frame."), radius, inside,
-                               place("A point of the axis, with length the centre of the first end")}),
+                               place_key("A point of the axis, with length the centre of the first end")}),
           .example =
               R"("name": "drum", "axis": [0, 1, 0], "radius": 0.05, "inside": true, "omega": [0, 3, 0])"},
          read_cylinder}) &&
     io::Registry<BoundaryType>::add(
         {"cone",
          {.description = "Circular cone that opens along its axis, infinite or with a length.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = with_length(
               {axis("Direction from the apex in which the cone opens [-], in the global "
                     "frame."),
@@ -223,15 +213,15 @@ const bool registered_boundary_keys =
                        "examples": [0.5])",
                 true},
                inside,
-               place("The apex")}),
+               place_key("The apex")}),
           .example = R"("name": "hopper", "axis": [0, 0, 1], "half_angle": 0.5, "inside": true)"},
          read_cone}) &&
     io::Registry<BoundaryType>::add({"sphere",
                                      {.description = "Sphere.",
-                                      .parts = of_body,
+                                      .parts = parts_of_body,
                                       .keys = {radius,
                                                inside,
-                                               place("The centre"),
+                                               place_key("The centre"),
                                                {"density",
                                                 "Density of the solid ball, instead of mass [kg/m^3]. Mass "
                                                 "and inertia are those of the ball; "
@@ -243,16 +233,25 @@ const bool registered_boundary_keys =
         {"body",
          {.description = "Rigid body without a surface of its own. Other boundaries are its surfaces: their "
                          "part_of has its name.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = {{"from_parts",
                     "If true, mass, centre of mass and inertia are the sums over the parts, which all have a "
                     "density. r, mass and inertia must not be given.",
                     R"("type": "boolean", "default": false, "examples": [true])"},
-                   place("The centre of mass, or the point to which velocity and loads refer")},
+                   place_key("The centre of mass, or the point to which velocity and loads refer")},
           .example = R"("name": "dumb-bell", "from_parts": true)"},
          read_body_of_parts});
 
 }  // namespace
+
+io::KeySchema place_key(const std::string& point)
+{
+    return {"r",
+            point +
+                " [m], in the global frame; numbers or formulas in t. With formulas, the boundary is at r(t) "
+                "after every step.",
+            R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"};
+}
 
 std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid)
 {

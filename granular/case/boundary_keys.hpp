@@ -57,6 +57,11 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary b, double
 /// The keys of read_frustum(). `needs_length`: whether length is required
 std::vector<io::KeySchema> frustum_keys(bool needs_length);
 
+/// The key r; `point` is what it is the position of
+io::KeySchema place_key(const std::string& point);
+/// The parts of the schema of a boundary that may have a mass (BoundaryType::schema)
+inline const std::vector<std::string> parts_of_body = {"boundary_keys", "body_keys"};
+
 /// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
 /// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
 std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name);

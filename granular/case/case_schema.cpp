@@ -91,8 +91,39 @@ io::Json having(const std::string& key, const io::Json& value, bool is_default)
     return all;
 }
 
-/// Sets the definitions of the laws, and the conditions that they state for the other keys of an entry of
-/// `laws`.
+/// A kind of laws, for the definition of each of its laws
+struct KindSchema {
+    std::string kind, standard;  ///< the name of the kind, and of its default law
+    io::TypeKind text;
+    io::Json variants = io::Json::array();  ///< the schema of the keys for each value of "law"
+};
+
+/// Adds the definition of a law, and the conditions that it states for the other keys of an entry of `laws`.
+/// of_materials: the schema of the entries whose normal law has the stiffness of the materials
+void add_law(const std::string& name, LawSchema law, const io::Json& of_materials, KindSchema& of,
+             io::Json& definitions, io::Json& conditions)
+{
+    std::string definition = of.kind + '_' + name;
+    std::replace(definition.begin(), definition.end(), '-', '_');
+    const io::Json is = having("law", {{"const", name}}, name == of.standard),
+                   chosen = having(of.kind, is, name == of.standard);
+    of.variants.push_back({{"if", is}, {"then", {{"$ref", "#/$defs/" + definition}}}});
+    if (law.of_pair.size() > 0) conditions.push_back({{"if", chosen}, {"then", {{"required", law.of_pair}}}});
+    io::Json none = io::Json::array();
+    for (const io::KeySchema& key : law.schema.keys)
+        none.push_back({{"not", {{"required", io::Json::List{key.name}}}}});
+    law.schema.keys.push_back(io::note_key);
+    definitions[definition] = io::definition(of.text, name, law.schema);
+    if (!law.of_material) return;
+    conditions.push_back(
+        {{"if", {{"allOf", io::Json::List{chosen, of_materials}}}},
+         {"then",
+          {{"required", io::Json::List{"restitution"}}, {"properties", {{of.kind, {{"allOf", none}}}}}}}});
+    conditions.push_back({{"if", {{"allOf", io::Json::List{chosen, {{"not", of_materials}}}}}},
+                          {"then", {{"properties", {{of.kind, {{"required", law.required_otherwise}}}}}}}});
+}
+
+/// Sets the definitions of the laws, and their conditions.
 void set_law_definitions(io::Json& definitions)
 {
     io::Json conditions = io::Json::array();
@@ -102,34 +133,13 @@ void set_law_definitions(io::Json& definitions)
     });
     const io::Json of_materials = having("normal", having("law", {{"enum", material_laws}}, true), true);
     for_each_kind([&]<class Laws>(const std::string& kind, const std::string& standard, Laws PairLaw::*) {
-        io::Json variants = io::Json::array();
-        io::TypeKind law_kind = {kind + " law", "law", "Name of the law."};
-        law_kind.title[0] = static_cast<char>(std::toupper(law_kind.title[0]));
+        KindSchema of{.kind = kind, .standard = standard, .text = {kind + " law", "law", "Name of the law."}};
+        of.text.title[0] = static_cast<char>(std::toupper(of.text.title[0]));
+        // What does not depend on the type of the law is a function: it is compiled once.
         Laws::for_each([&](const auto& law) {
-            const std::string name = law.name;
-            std::string definition = kind + '_' + name;
-            std::replace(definition.begin(), definition.end(), '-', '_');
-            LawSchema read(law);
-            const io::Json is = having("law", {{"const", name}}, name == standard),
-                           chosen = having(kind, is, name == standard);
-            variants.push_back({{"if", is}, {"then", {{"$ref", "#/$defs/" + definition}}}});
-            if (read.of_pair.size() > 0)
-                conditions.push_back({{"if", chosen}, {"then", {{"required", read.of_pair}}}});
-            io::Json none = io::Json::array();
-            for (const io::KeySchema& key : read.schema.keys)
-                none.push_back({{"not", {{"required", io::Json::List{key.name}}}}});
-            read.schema.keys.push_back(io::note_key);
-            definitions[definition] = io::definition(law_kind, name, read.schema);
-            if (!read.of_material) return;
-            conditions.push_back({{"if", {{"allOf", io::Json::List{chosen, of_materials}}}},
-                                  {"then",
-                                   {{"required", io::Json::List{"restitution"}},
-                                    {"properties", {{kind, {{"allOf", none}}}}}}}});
-            conditions.push_back(
-                {{"if", {{"allOf", io::Json::List{chosen, {{"not", of_materials}}}}}},
-                 {"then", {{"properties", {{kind, {{"required", read.required_otherwise}}}}}}}});
+            add_law(law.name, LawSchema(law), of_materials, of, definitions, conditions);
         });
-        definitions[kind + "_law"]["allOf"] = variants;
+        definitions[kind + "_law"]["allOf"] = of.variants;
     });
     definitions["law"]["allOf"] = conditions;
 }

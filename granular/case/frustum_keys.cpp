@@ -38,7 +38,7 @@ NamedBoundary end_face(const NamedBoundary& side, bool second)
 }
 
 /// Places the centre of mass: r is the centre, and the frustum begins before it.
-void set_centre(NamedBoundary& b, double along)
+void set_frustum_centre(NamedBoundary& b, double along)
 {
     displace(b, along * b.boundary.axis);
     b.boundary.from -= along, b.boundary.to -= along;
@@ -108,9 +108,9 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary of, doubl
     read_body(o, of, dense);
     const double middle = solid.centre.dot(b.axis);
     if (b.mass > 0)
-        set_centre(of, o.number("centre", middle));
+        set_frustum_centre(of, o.number("centre", middle));
     else if (of.solid)
-        set_centre(of, middle);
+        set_frustum_centre(of, middle);
     std::vector<NamedBoundary> all = {of};
     if (b.inside == 0) return all;
     if (!open[0] && radius > 0) all.push_back(end_face(of, false));
@@ -147,16 +147,6 @@ std::vector<io::KeySchema> frustum_keys(bool needs_length)
 
 namespace {
 
-/// The key r; `point` is what it is the position of
-io::KeySchema place(const std::string& point)
-{
-    return {"r",
-            point +
-                " [m], in the global frame; numbers or formulas in t. With formulas, the boundary is at r(t) "
-                "after every step.",
-            R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"};
-}
-
 io::KeySchema of(const char* name, const char* text, const char* type, const char* example)
 {
     return {name, text, std::string(R"("$ref": "#/$defs/)") + type + R"(", "examples": [)" + example + "]",
@@ -174,13 +164,11 @@ std::vector<io::KeySchema> frustum_type_keys()
          true},
         {"inside", "If true, the particles are inside of the surface; otherwise they are outside.",
          R"("type": "boolean", "default": false, "examples": [true])"},
-        place("The centre of the first end")};
+        place_key("The centre of the first end")};
     const std::vector<io::KeySchema> more = frustum_keys(true);
     all.insert(all.end(), more.begin(), more.end());
     return all;
 }
-
-const std::vector<std::string> of_body = {"boundary_keys", "body_keys"};
 
 const bool registered_frustum_keys =
     io::Registry<BoundaryType>::add(
@@ -188,7 +176,7 @@ const bool registered_frustum_keys =
          {.description =
               "Part of a cone between two planes normal to its axis, or finite cylinder, with closed "
               "or open ends.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = frustum_type_keys(),
           .example =
               R"("name": "hopper", "axis": [0, 0, 1], "radii": [0.01, 0.05], "length": 0.06, "inside": true,
@@ -198,19 +186,19 @@ const bool registered_frustum_keys =
         {"disk",
          {.description =
               "Disk with a circular edge. The particles are on the side to which the normal points.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys = {of("normal", "Normal towards the particles [-], in the global frame.", "direction",
                       "[0, 0, 1]"),
                    of("radius", "Radius [m].", "positive", "0.05"),
                    {"two_sided", "If true, particles are in contact with both sides.",
                     R"("type": "boolean", "default": false, "examples": [true])"},
-                   place("The centre")},
+                   place_key("The centre")},
           .example = R"("name": "piston", "normal": [0, 0, -1], "radius": 0.02, "r": [0, 0, 0.1])"},
          read_disk}) &&
     io::Registry<BoundaryType>::add(
         {"torus",
          {.description = "Ring torus, for example a tyre.",
-          .parts = of_body,
+          .parts = parts_of_body,
           .keys =
               {of("axis", "Direction of the axis [-], in the global frame.", "direction", "[0, 1, 0]"),
                of("radius", "Radius of the tube [m].", "positive", "0.02"),
@@ -222,7 +210,7 @@ const bool registered_frustum_keys =
                 "Density of the solid, instead of mass [kg/m^3]. Mass and inertia are those of the solid; "
                 "inertia replaces the latter.",
                 R"("$ref": "#/$defs/positive", "examples": [1200])"},
-               place("The centre")},
+               place_key("The centre")},
           .example =
               R"("name": "tyre", "axis": [0, 1, 0], "radius": 0.02, "ring_radius": 0.1, "r": [0, 0, 0.12])"},
          read_torus});

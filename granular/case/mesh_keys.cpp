@@ -40,7 +40,7 @@ int number(ObjectReader& o, std::string_view key, long fallback)
     return static_cast<int>(n);
 }
 
-TriangleMesh read_box(ObjectReader& o)
+TriangleMesh read_box_mesh(ObjectReader& o)
 {
     const Vec3 low = o.vec3("low"), high = o.vec3("high");
     const std::array<bool, 6> open = o.sides("open");
@@ -62,7 +62,7 @@ TriangleMesh read_plate(ObjectReader& o)
     const double x = o.positive("width_x"), y = o.positive("width_y");
     return plate_mesh(x, y, o.not_negative("edge", 0));
 }
-TriangleMesh read_sphere(ObjectReader& o)
+TriangleMesh read_sphere_mesh(ObjectReader& o)
 {
     const double radius = o.positive("radius");
     return sphere_mesh(radius, number(o, "divisions", 3));
@@ -72,11 +72,11 @@ struct Source {
     const char* key;
     TriangleMesh (*read)(ObjectReader& o);
 };
-constexpr std::array<Source, 5> shapes = {{{"box", read_box},
+constexpr std::array<Source, 5> shapes = {{{"box", read_box_mesh},
                                            {"lathe", read_lathe},
                                            {"extrude", read_extrusion},
                                            {"plate", read_plate},
-                                           {"sphere", read_sphere}}};
+                                           {"sphere", read_sphere_mesh}}};
 
 TriangleMesh read_triangles(ObjectReader& o)
 {
@@ -123,13 +123,13 @@ SolidBody solid_inside(ObjectReader& o, const TriangleMesh& mesh)
 }
 
 /// Makes the centre of mass the origin of the mesh and the place of the boundary.
-void set_centre(NamedBoundary& b, const Vec3& centre)
+void set_mesh_centre(NamedBoundary& b, const Vec3& centre)
 {
     for (Vec3& v : b.mesh->vertex) v = v - centre;
     displace(b, rotated(b.boundary.p, centre));
 }
 
-std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
+std::vector<NamedBoundary> read_mesh(ObjectReader& o, NamedBoundary b)
 {
     b.boundary.shape = Boundary::Shape::mesh;
     b.mesh = read_triangles(o);
@@ -141,7 +141,7 @@ std::vector<NamedBoundary> read(ObjectReader& o, NamedBoundary b)
     read_body(o, b, solid);
     Vec3 centre = solid ? solid->centre : Vec3{0, 0, 0};
     if (b.boundary.mass > 0) centre = o.vec3("centre", centre);
-    if (centre != Vec3{0, 0, 0}) set_centre(b, centre);
+    if (centre != Vec3{0, 0, 0}) set_mesh_centre(b, centre);
     return {b};
 }
 
@@ -240,7 +240,7 @@ const bool registered_mesh_keys = io::Registry<BoundaryType>::add(
             "displacement of the centre of mass.",
             R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"}},
       .example = R"json("name": "hopper", "lathe": {"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]]})json"},
-     read});
+     read_mesh});
 
 }  // namespace
 

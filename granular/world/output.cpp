@@ -10,7 +10,7 @@ namespace hilda::granular {
 namespace {
 
 /// Appends the components, each preceded by a comma
-void append(std::string& to, const Vec3& v)
+void append_csv(std::string& to, const Vec3& v)
 {
     for (const double c : {v.x, v.y, v.z}) {
         to += ',';
@@ -47,7 +47,7 @@ void particles_csv(const World& world, const io::Append& append_piece, const Gro
     world.each_particle([&](const Particle& p) {
         csv += std::to_string(p.id) + ',' + std::to_string(p.material) + ',';
         io::append_number(csv, p.radius);
-        append(csv, p.r), append(csv, p.v), append(csv, p.omega);
+        append_csv(csv, p.r), append_csv(csv, p.v), append_csv(csv, p.omega);
         for (std::size_t k = 0; orientation && k < 4; ++k) csv += ',', io::append_number(csv, p.e[k]);
         if (groups != nullptr) csv += ',' + std::to_string(groups->of(p.id));
         if (clumps) csv += ',' + std::to_string(p.clump);
@@ -65,9 +65,9 @@ void clumps_csv(const World& world, const io::Append& append_piece)
         const ClumpTemplate& t = world.clump_templates()[static_cast<std::size_t>(c.shape)];
         csv += std::to_string(c.id) + ',' + std::to_string(t.spheres.size()) + ',' + std::to_string(c.shape);
         for (const double x : {c.mass, c.scale}) csv += ',', io::append_number(csv, x);
-        append(csv, c.r), append(csv, c.v), append(csv, c.omega);
+        append_csv(csv, c.r), append_csv(csv, c.v), append_csv(csv, c.omega);
         for (const double e : c.e) csv += ',', io::append_number(csv, e);
-        append(csv, c.L);
+        append_csv(csv, c.L);
         csv += '\n';
         pass_on_full(csv, append_piece);
     }
@@ -79,10 +79,10 @@ void contacts_csv(const World& world, const io::Append& append_piece)
     std::string csv = "i,j,boundary,nx,ny,nz,overlap,Fx,Fy,Fz,ux,uy,uz\n";
     for (const ContactRecord& c : world.contacts()) {
         csv += std::to_string(c.i) + ',' + std::to_string(c.j) + ',' + (c.boundary ? '1' : '0');
-        append(csv, c.n);
+        append_csv(csv, c.n);
         csv += ',';
         io::append_number(csv, c.delta);
-        append(csv, c.F), append(csv, c.u);
+        append_csv(csv, c.F), append_csv(csv, c.u);
         csv += '\n';
         pass_on_full(csv, append_piece);
     }

@@ -217,17 +217,13 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
     return on[static_cast<std::size_t>(b)];
 }
 
-namespace {
-
-struct ExactWrench {
-    FixedVec F, T;
-    Wrench value() const { return {F.value(), T.value()}; }
-};
-
-}  // namespace
-
 /// World::Totals of any parts, whose order has no influence; the stress is that over a volume of 1.
 struct World::ExactTotals {
+    struct ExactWrench {
+        FixedVec F, T;
+        Wrench value() const { return {F.value(), T.value()}; }
+    };
+
     std::size_t contacts = 0;
     std::array<FixedSum, 9> stress = {};
     std::vector<ExactWrench> on_boundary;
@@ -300,7 +296,8 @@ void World::add_totals(const To& to) const
 
 World::Totals World::totals() const
 {
-    ExactTotals sum{.contacts = 0, .stress = {}, .on_boundary = std::vector<ExactWrench>(boundaries.size())};
+    ExactTotals sum{
+        .contacts = 0, .stress = {}, .on_boundary = std::vector<ExactTotals::ExactWrench>(boundaries.size())};
     add_totals([&](std::uint16_t) { return &sum; });
     Totals all;
     sum.put(all, volume());

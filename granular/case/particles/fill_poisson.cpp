@@ -11,7 +11,7 @@ namespace {
 
 /// Bridson's algorithm (2007): 30 candidates around each point, at a distance between one and two spacings. A
 /// background grid of cells with one point each limits the distance checks to 5³ cells.
-std::vector<Vec3> centres(const FillSpec& f, const Vec3& low, const Vec3& high, Random& random)
+std::vector<Vec3> poisson_centres(const FillSpec& f, const Vec3& low, const Vec3& high, Random& random)
 {
     const double cell = f.spacing / std::sqrt(3.);
     const auto cells = [&](double length) { return static_cast<long>(length / cell) + 1; };
@@ -57,7 +57,7 @@ std::vector<Vec3> centres(const FillSpec& f, const Vec3& low, const Vec3& high, 
 
 /// Bridson's algorithm generates about 0.58 particles per cube of the spacing. max_count is ignored, because
 /// all positions are generated first.
-double estimated(const FillSpec& f, const Vec3& size)
+double estimated_poisson(const FillSpec& f, const Vec3& size)
 {
     const auto n = [&](double length) { return length / f.spacing + 0.4; };
     return 0.58 * n(size.x) * n(size.y) * n(size.z);
@@ -72,8 +72,8 @@ const bool registered_fill_poisson = io::Registry<FillType>::add(
                     R"("low": [0, 0, 0], "high": [0.03, 0.02, 0.028], "radius": 0.001, "least_radius": 8e-4,
                               "spacing": 1.02)"},
      .read = read_filled_box,
-     .centres = centres,
-     .estimated_count = estimated});
+     .centres = poisson_centres,
+     .estimated_count = estimated_poisson});
 
 }  // namespace
 

@@ -17,8 +17,8 @@ using granular::Inertia;
 
 namespace {
 
-granular::Case read(const std::string& boundaries,
-                    const std::string& particles = R"([{"r": [0, 0, 0.9], "radius": 0.01}])")
+granular::Case read_bodies(const std::string& boundaries,
+                           const std::string& particles = R"([{"r": [0, 0, 0.9], "radius": 0.01}])")
 {
     return granular::read_case(
         R"({"hilda_case": 1, "domain": {"low": [-1, -1, -1], "high": [1, 1, 1]}, "step": 1e-5, "end": 1e-3,
@@ -32,7 +32,7 @@ void check_error(const std::string& boundaries, const std::string& expected)
 {
     std::string what;
     try {
-        read(boundaries);
+        read_bodies(boundaries);
     } catch (const std::exception& e) {
         what = e.what();
     }
@@ -92,7 +92,7 @@ TEST_CASE("a frustum cut in two has the mass properties of the whole", "[granula
 
 TEST_CASE("cylinders and cones with a length are frusta", "[granular][case][shapes]")
 {
-    const granular::Case c = read(R"(
+    const granular::Case c = read_bodies(R"(
         {"name": "rod", "type": "cylinder", "axis": [0, 0, 2], "radius": 0.1, "length": 0.5, "density": 1000, "r": [0, 0, -0.5]},
         {"name": "cone", "type": "cone", "axis": [1, 0, 0], "half_angle": 0.5, "length": 0.3, "mass": 2, "centre": 0.1},
         {"name": "silo", "type": "frustum", "axis": [0, 0, 1], "radii": [0.2, 0.4], "length": 0.3, "inside": true, "open": ["+"],
@@ -128,8 +128,8 @@ TEST_CASE("the order of a body and its parts in the case does not matter", "[gra
         bar = R"({"name": "bar", "type": "mesh", "density": 2000, "r": [0, 0, 0.3], "rotation": [0, 0.3, 0],
                                 "box": {"low": [-0.1, -0.02, -0.02], "high": [0.1, 0.02, 0.02], "inside": false}, "part_of": "bell"})",
         bell = R"({"name": "bell", "type": "body", "from_parts": true, "v": [0.1, 0, 0]})";
-    const granular::Case a = read(left + ", " + right + ", " + bar + ", " + bell),
-                         b = read(bell + ", " + left + ", " + right + ", " + bar);
+    const granular::Case a = read_bodies(left + ", " + right + ", " + bar + ", " + bell),
+                         b = read_bodies(bell + ", " + left + ", " + right + ", " + bar);
     const Boundary &first = a.world->all_boundaries()[3], &second = b.world->all_boundaries()[0];
     const double m = 4. / 3 * std::numbers::pi * 1e-3, of_bar = 2000 * 0.2 * 0.04 * 0.04;
     CHECK(first.mass == Approx(4000 * m + of_bar).epsilon(1e-12));
@@ -190,10 +190,10 @@ TEST_CASE("a tool that nothing holds above a plane gives a warning at the start"
     const auto notices = [](const granular::Case& c) { return c.notices; };
     const std::string on_floor = R"([{"r": [0.02, 0, 0.01], "radius": 0.01}])",
                       beside = R"([{"r": [0.3, 0, 0.01], "radius": 0.01}])";
-    const auto alone = notices(read(all + "}", beside));
+    const auto alone = notices(read_bodies(all + "}", beside));
     REQUIRE(alone.size() == 1);
     CHECK_THAT(alone[0], Catch::Contains("(/boundaries/1): nothing holds boundary 'ball' above 'floor'"));
-    CHECK(notices(read(all + "}", on_floor)).empty());
-    CHECK(notices(read(all + R"(, "free": [true, true, false]})", beside)).empty());
-    CHECK(notices(read(all + R"(, "F": [0, 0, 10]})", beside)).empty());
+    CHECK(notices(read_bodies(all + "}", on_floor)).empty());
+    CHECK(notices(read_bodies(all + R"(, "free": [true, true, false]})", beside)).empty());
+    CHECK(notices(read_bodies(all + R"(, "F": [0, 0, 10]})", beside)).empty());
 }

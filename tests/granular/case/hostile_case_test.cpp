@@ -25,7 +25,7 @@ ordered_json example()
 }
 
 /// "" if the case is read, or the message
-std::string refusal(const std::string& text)
+std::string message_of(const std::string& text)
 {
     try {
         granular::read_case(text, "case.json", {.memory = std::size_t{1} << 30});
@@ -48,7 +48,7 @@ void collect(const ordered_json& v, const std::string& at, std::vector<std::stri
 TEST_CASE("each changed value of the example case is read, or refused with its place", "[granular][case]")
 {
     const ordered_json good = example();
-    REQUIRE(refusal(good.dump()).empty());
+    REQUIRE(message_of(good.dump()).empty());
     std::vector<std::string> pointers;
     collect(good, "", pointers);
     std::vector<std::string> texts;
@@ -85,20 +85,21 @@ TEST_CASE("each changed value of the example case is read, or refused with its p
         texts.push_back(without.dump());
         texts.push_back(misspelt.dump());
         texts.push_back(std::regex_replace(twice.dump(), std::regex("duplicate of the key"), at.back()));
-        CHECK_THAT(refusal(texts.back()), Catch::Contains("is given twice; first at case.json:1:"));
-        CHECK_THAT(refusal(misspelt.dump()), Catch::Contains("unknown key \"" + at.back() + "x\"") ||
-                                                 Catch::Contains("missing key '" + at.back() + "'") ||
-                                                 Catch::Contains(" a case must have at least one material"));
+        CHECK_THAT(message_of(texts.back()), Catch::Contains("is given twice; first at case.json:1:"));
+        CHECK_THAT(message_of(misspelt.dump()),
+                   Catch::Contains("unknown key \"" + at.back() + "x\"") ||
+                       Catch::Contains("missing key '" + at.back() + "'") ||
+                       Catch::Contains(" a case must have at least one material"));
         ordered_json nan = good;
         nan[at] = "not a number";
         texts.push_back(std::regex_replace(nan.dump(), std::regex("\"not a number\""), "NaN"));
-        CHECK_THAT(refusal(texts.back()),
+        CHECK_THAT(message_of(texts.back()),
                    Catch::EndsWith("not JSON: invalid literal, got 'NaN'; numbers must be finite"));
     }
     static const std::regex form(R"(case\.json:[1-9]\d*:[1-9]\d* \((/[^ ]*)\): .+)");
     int refused = 0;
     for (const std::string& text : texts) {
-        const std::string message = refusal(text);
+        const std::string message = message_of(text);
         if (message.empty()) continue;
         ++refused;
         INFO(text);

@@ -17,7 +17,8 @@ namespace {
 const std::filesystem::path folder = std::filesystem::temp_directory_path() / "hilda_mesh_keys_test";
 
 /// Reads a case with a mesh of these members.
-granular::Case read(const std::string& members, const std::string& periodic = "[false, false, false]")
+granular::Case read_mesh_case(const std::string& members,
+                              const std::string& periodic = "[false, false, false]")
 {
     const std::string text =
         R"({"hilda_case": 1, "domain": {"low": [-1, -1, -1], "high": [1, 1, 1], "periodic": )" + periodic +
@@ -33,7 +34,7 @@ granular::Case read(const std::string& members, const std::string& periodic = "[
 std::string error_of(const std::string& members)
 {
     try {
-        read(members);
+        read_mesh_case(members);
     } catch (const std::exception& e) {
         return e.what();
     }
@@ -42,7 +43,7 @@ std::string error_of(const std::string& members)
 
 std::size_t triangles(const std::string& members)
 {
-    return read(members).world->all_meshes().triangle.size();
+    return read_mesh_case(members).world->all_meshes().triangle.size();
 }
 
 }  // namespace
@@ -59,8 +60,8 @@ TEST_CASE("a case file describes meshes by files and shapes", "[granular][mesh][
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "one.obj") << "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n";
     const granular::Case c =
-        read("\"file\": \"" + (folder / "one.obj").string() +
-             R"(", "scale": 0.001, "r": [0, 0, 0.5], "rotation": [0, 0, 1], "omega": [0, 0, 2])");
+        read_mesh_case("\"file\": \"" + (folder / "one.obj").string() +
+                       R"(", "scale": 0.001, "r": [0, 0, 0.5], "rotation": [0, 0, 1], "omega": [0, 0, 2])");
     REQUIRE(c.world->all_meshes().vertex.size() == 3);
     CHECK(c.world->all_meshes().vertex[1].x == Approx(1));
     CHECK(c.world->all_boundaries()[0].p.e0 == Approx(std::cos(0.5)));
@@ -106,7 +107,7 @@ TEST_CASE("density gives a mesh the mass, the centre and the inertia of its soli
           "[granular][mesh][tool][case]")
 {
     const std::string box = R"("box": {"low": [0, 0, 0], "high": [0.2, 0.4, 0.6], "inside": false})";
-    const granular::Case c = read(box + R"(, "density": 1000, "r": ["0.1*t", 0.05, 0],
+    const granular::Case c = read_mesh_case(box + R"(, "density": 1000, "r": ["0.1*t", 0.05, 0],
                                   "rotation": [0, 0, 1.5707963267948966])");
     const granular::Boundary& b = c.world->all_boundaries()[0];
     const double m = 48;
@@ -120,7 +121,7 @@ TEST_CASE("density gives a mesh the mass, the centre and the inertia of its soli
     CHECK((c.world->all_meshes().vertex[0].norm() == Approx(std::sqrt(0.01 + 0.04 + 0.09))));
 
     const granular::Case given =
-        read(box + R"(, "mass": 2, "centre": [0.1, 0.1, 0.1], "inertia": [[2, 0.1, 0],
+        read_mesh_case(box + R"(, "mass": 2, "centre": [0.1, 0.1, 0.1], "inertia": [[2, 0.1, 0],
         [0.1, 3, 0.2], [0, 0.2, 2.5]], "free": [true, false, true, false, true, false], "omega": ["t", 0, 0])");
     const granular::Boundary& g = given.world->all_boundaries()[0];
     CHECK(g.inertia.xy == 0.1);
@@ -150,7 +151,7 @@ TEST_CASE("density gives a mesh the mass, the centre and the inertia of its soli
 TEST_CASE("a mesh that reaches a periodic side gives a warning", "[granular][mesh][case]")
 {
     const std::string plate = R"("plate": {"width_x": 2, "width_y": 2})";
-    const auto notices = [&](const std::string& periodic) { return read(plate, periodic).notices; };
+    const auto notices = [&](const std::string& periodic) { return read_mesh_case(plate, periodic).notices; };
     CHECK(notices("[false, false, false]").empty());
     REQUIRE(notices("[false, true, false]").size() == 1);
     CHECK(notices("[false, true, false]")[0].find("reaches a periodic side along y") != std::string::npos);
@@ -158,9 +159,9 @@ TEST_CASE("a mesh that reaches a periodic side gives a warning", "[granular][mes
 
 TEST_CASE("a mesh in other units than the case gives a warning", "[granular][mesh][case]")
 {
-    CHECK(read(R"("sphere": {"radius": 0.1})").notices.empty());
+    CHECK(read_mesh_case(R"("sphere": {"radius": 0.1})").notices.empty());
     const auto notice = [](const std::string& radius) {
-        const auto all = read("\"sphere\": {\"radius\": " + radius + "}").notices;
+        const auto all = read_mesh_case("\"sphere\": {\"radius\": " + radius + "}").notices;
         return all.size() == 1 ? all[0] : "";
     };
     CHECK(notice("1000").find("m long, the domain 3.46") != std::string::npos);
@@ -169,7 +170,7 @@ TEST_CASE("a mesh in other units than the case gives a warning", "[granular][mes
 
 TEST_CASE("particles outside of a closed mesh that faces inwards are noticed", "[granular][mesh][case]")
 {
-    const auto notices = [](const std::string& members) { return read(members).notices; };
+    const auto notices = [](const std::string& members) { return read_mesh_case(members).notices; };
     // The particle is at (0, 0, 0.9).
     const std::vector<std::string> below =
         notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]})");

@@ -17,6 +17,8 @@ using granular::Scheme;
 using granular::solid_clump;
 using granular::Sphere;
 
+namespace clump_engine_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -126,3 +128,5 @@ TEST_CASE("clumps that are added during a run leave the others as they are", "[g
     CHECK(all.back().clump == id);
     world.step(500);
 }
+
+}  // namespace clump_engine_test

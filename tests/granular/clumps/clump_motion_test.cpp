@@ -24,6 +24,8 @@ using granular::solid_clump;
 using granular::Sphere;
 using granular::turned;
 
+namespace clump_motion_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -393,3 +395,5 @@ TEST_CASE("the limits of the step are the same before and after the insertion of
     CHECK(world.step_limits().collision == Approx(before.collision).epsilon(1e-6));
     CHECK(world.step_limits().rayleigh == Approx(before.rayleigh).epsilon(1e-6));
 }
+
+}  // namespace clump_motion_test

@@ -14,6 +14,8 @@
 
 using namespace hilda::granular;
 
+namespace boundary_test {
+
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -235,3 +237,5 @@ TEST_CASE("the velocity of a boundary is the velocity of its material points", "
         }
     }
 }
+
+}  // namespace boundary_test

@@ -15,6 +15,8 @@
 using namespace hilda::granular;
 using Shape = Boundary::Shape;
 
+namespace finite_shapes_test {
+
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -285,3 +287,5 @@ TEST_CASE("inside a closed frustum there is one contact for each local minimum o
         CHECK(found > 300);
     }
 }
+
+}  // namespace finite_shapes_test

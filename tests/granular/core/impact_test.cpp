@@ -12,6 +12,8 @@
 using namespace hilda;
 using namespace hilda::tests;
 
+namespace impact_test {
+
 namespace {
 
 constexpr double R = 0.5;
@@ -104,3 +106,5 @@ TEST_CASE("no impact on a plane ends with a gain of energy, and mindlin-incremen
     // a property of the law; see docs/theory/granular.md
     if (!incremental && e < 0.1 && mu > 1 && degrees > 80 && spin < 0) CHECK(largest > 1.2 * start);
 }
+
+}  // namespace impact_test

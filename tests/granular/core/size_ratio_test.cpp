@@ -10,6 +10,8 @@
 using namespace hilda;
 using namespace hilda::tests;
 
+namespace size_ratio_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -108,3 +110,5 @@ TEST_CASE("a large particle does not add pairs to the others", "[granular][neigh
     CHECK(pairs(1) == pairs(10));
     CHECK(pairs(1) == pairs(20));
 }
+
+}  // namespace size_ratio_test

@@ -10,6 +10,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::ContactRecord;
 
+namespace sparse_domain_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -88,3 +90,5 @@ TEST_CASE("a domain that is too large for the particles is rejected", "[granular
     world.add(Particle{.r = {1, 1, 1}, .radius = R});
     CHECK_THROWS_WITH(world.step(), Catch::Contains("must not have more than 2^31 cells"));
 }
+
+}  // namespace sparse_domain_test

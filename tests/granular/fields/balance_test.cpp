@@ -11,6 +11,8 @@
 using namespace hilda::granular;
 using namespace hilda::tests;
 
+namespace balance_test {
+
 namespace {
 
 constexpr double R = 1e-3, g = 9.81;
@@ -204,3 +206,5 @@ TEST_CASE("the integrals of the fields are mass, momentum, energy and the loads"
         }
     }
 }
+
+}  // namespace balance_test

@@ -13,6 +13,8 @@
 using namespace hilda::granular;
 using namespace hilda::tests;
 
+namespace column_test {
+
 namespace {
 
 constexpr double R = 0.01, side = 7 * R, A = side * side, g = 9.81;
@@ -114,3 +116,5 @@ TEST_CASE("fields have the same bits for any number of threads", "[granular][fie
         omp_set_num_threads(1);
     }
 }
+
+}  // namespace column_test

@@ -9,6 +9,8 @@
 
 using namespace hilda::granular;
 
+namespace kernel_test {
+
 namespace {
 
 const std::array<Kernel, 2> kernels = {Kernel{Kernel::Type::gaussian, 0.7}, Kernel{Kernel::Type::lucy, 1.6}};
@@ -143,3 +145,5 @@ TEST_CASE("the mean over a cell is that of the values in it", "[granular][fields
               Approx(sum(CellWeights(points, kernel).of_line(r, a))).epsilon(limit));
     }
 }
+
+}  // namespace kernel_test

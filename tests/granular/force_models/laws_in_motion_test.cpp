@@ -12,6 +12,8 @@ using namespace hilda;
 using namespace hilda::tests;
 using namespace hilda::granular;
 
+namespace laws_in_motion_test {
+
 namespace {
 
 // static overlap of 1 mm, half of the critical damping
@@ -283,3 +285,5 @@ TEST_CASE("two spheres with the law scaled-hooke of a case collide as its energy
         CHECK(deepest < turning);
     }
 }
+
+}  // namespace laws_in_motion_test

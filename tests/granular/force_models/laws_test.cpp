@@ -9,6 +9,8 @@
 
 using namespace hilda::granular;
 
+namespace laws_test {
+
 namespace {
 
 using Vec3 = Vec<double>;
@@ -340,3 +342,5 @@ TEST_CASE("laws of rolling and spin dissipate energy in every cycle", "[granular
             CHECK(work > -10 * amplitude * 0.25 * R * N * 2);  // at most the bounds times the path
         }
 }
+
+}  // namespace laws_test

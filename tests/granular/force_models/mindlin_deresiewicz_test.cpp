@@ -18,6 +18,8 @@ using granular::Hooke;
 using granular::MindlinDeresiewicz;
 using granular::MindlinIncremental;
 
+namespace mindlin_deresiewicz_test {
+
 namespace {
 
 constexpr double R = 0.125, h = 0.0078125, K_0 = 512, mu = 0.5, overlap = 1. / 128, bound = 4;  // μ N = 4 N
@@ -251,3 +253,5 @@ TEST_CASE("oblique impacts with partial slip lose energy and agree with double p
             CHECK((a.omega - b.omega).norm() < 3e-3);
         }
 }
+
+}  // namespace mindlin_deresiewicz_test

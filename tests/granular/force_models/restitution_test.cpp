@@ -10,6 +10,8 @@
 using namespace hilda::tests;
 using namespace hilda::granular;
 
+namespace restitution_test {
+
 namespace {
 
 constexpr double R = 0.125, m = 2, E = 1e6;
@@ -146,3 +148,5 @@ TEST_CASE("the collision times of the normal laws are not above those of their c
         CHECK(viscous.collision_time(m, R, v) < hertz_time(v));
     }
 }
+
+}  // namespace restitution_test

@@ -14,6 +14,8 @@ using granular::DoubleWorld;
 using granular::History;
 using granular::WaltonBraun;
 
+namespace walton_braun_test {
+
 namespace {
 
 constexpr double R = 1e-3, m = 1e-5, k_1 = 1e3;
@@ -204,3 +206,5 @@ TEST_CASE("the case gives k_2 or the restitution of walton-braun", "[granular][l
     CHECK_THROWS_WITH(rebound(R"("normal": {"law": "walton-braun", "k_1": 1000})"),
                       Catch::Contains("restitution"));
 }
+
+}  // namespace walton_braun_test

@@ -61,7 +61,7 @@ InsertionRegion region_of(const std::string& members)
     return granular::read_region({source, source.root, ""}, R);
 }
 
-std::string refusal(const std::string& members)
+std::string refusal_of_region(const std::string& members)
 {
     try {
         region_of(members);
@@ -137,7 +137,7 @@ TEST_CASE("a region without place for a particle is refused", "[granular][insert
         {R"("type": "disk", "r": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.01, "length": 1)", "length"}};
     for (const auto& [members, message] : wrong) {
         INFO(members);
-        CHECK_THAT(refusal(members), Catch::Contains(message));
+        CHECK_THAT(refusal_of_region(members), Catch::Contains(message));
     }
 }
 

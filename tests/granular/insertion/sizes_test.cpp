@@ -23,7 +23,7 @@ Sizes sizes(const std::string& members)
     return granular::read_sizes(ObjectReader(source, source.root, ""));
 }
 
-std::string refusal(const std::string& members)
+std::string refusal_of_sizes(const std::string& members)
 {
     try {
         sizes(members);
@@ -227,7 +227,8 @@ TEST_CASE("wrong size distributions are refused with their place", "[granular][s
         {R"("type": "uniform", "least_radius": 1e-3, "largest_radius": 1e-3, "mean": 1)", "mean"}};
     for (const auto& [members, message] : wrong) {
         INFO(members);
-        CHECK_THAT(refusal(members), Catch::Contains(message));
+        CHECK_THAT(refusal_of_sizes(members), Catch::Contains(message));
     }
-    CHECK(refusal(R"("type": "uniform", "least_radius": 1e-3, "largest_radius": 1e-3)") == "nothing");
+    CHECK(refusal_of_sizes(R"("type": "uniform", "least_radius": 1e-3, "largest_radius": 1e-3)") ==
+          "nothing");
 }

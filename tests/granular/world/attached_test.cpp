@@ -12,6 +12,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::Scheme;
 
+namespace attached_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -165,3 +167,5 @@ TEST_CASE("a particle is not attached to an unknown boundary or to one with a ma
     CHECK_THROWS_AS(world.add(Particle{.radius = R, .attached_to = 0}), io::InvalidInput);
     CHECK_THROWS_AS(world.add(Particle{.radius = R, .attached_to = 1}), io::InvalidInput);
 }
+
+}  // namespace attached_test

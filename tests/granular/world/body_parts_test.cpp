@@ -18,6 +18,8 @@ using granular::Scheme;
 using granular::turned;
 using Shape = Boundary::Shape;
 
+namespace body_parts_test {
+
 namespace {
 
 WorldOptions room(double h, Scheme scheme = Scheme::symplectic_euler)
@@ -276,3 +278,5 @@ TEST_CASE("a tool may start outside of the domain, and a plane may slide in itse
     CHECK(world.boundary(1).r.x > 0.02);
     CHECK(world.watch().warnings == 0);
 }
+
+}  // namespace body_parts_test

@@ -8,6 +8,8 @@
 using namespace hilda::granular;
 using Shape = Boundary::Shape;
 
+namespace boundary_drawing_test {
+
 namespace {
 
 const Vec3 low = {-1, -2, 0}, high = {1, 2, 3};
@@ -78,3 +80,5 @@ TEST_CASE("a plane is drawn where it intersects the domain", "[granular][vtk]")
     CHECK(size({.r = {0, 0, 1}, .axis = {diagonal, 0, diagonal}}) == Approx(4 * std::sqrt(8.)).epsilon(1e-6));
     CHECK(size({.r = {0, 0, -0.1}, .axis = {0, 0, 1}}) == 0);
 }
+
+}  // namespace boundary_drawing_test

@@ -11,6 +11,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using io::InvalidInput;
 
+namespace changes_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -248,3 +250,5 @@ TEST_CASE("a particle and a rotating tool conserve angular momentum", "[granular
     const Vec3 P_0 = world.particles()[0].mass * Vec3{0.2, 0.1, -0.5};
     CHECK((P - P_0).norm() < 1e-5 * P_0.norm());
 }
+
+}  // namespace changes_test

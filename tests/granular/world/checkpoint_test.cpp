@@ -14,6 +14,8 @@
 using namespace hilda;
 using namespace hilda::tests;
 
+namespace checkpoint_test {
+
 namespace {
 
 const char* const bed = R"({"hilda_case": 1,
@@ -165,3 +167,5 @@ TEST_CASE("a checkpoint with an invalid index, number or length is rejected", "[
     }
     CHECK(rejected > 100);
 }
+
+}  // namespace checkpoint_test

@@ -15,6 +15,8 @@ using granular::Nearest;
 using granular::Scheme;
 using Shape = Boundary::Shape;
 
+namespace finite_boundaries_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -197,3 +199,5 @@ TEST_CASE("dimensions that a finite boundary cannot have are refused", "[granula
     torus.shape = Shape::torus, torus.radius = 1, torus.second_radius = 0.5;
     CHECK_THROWS_WITH(world.add(torus), Catch::Contains("ring of a torus must be larger than its tube"));
 }
+
+}  // namespace finite_boundaries_test

@@ -15,6 +15,8 @@ using granular::ContactRecord;
 using granular::DoubleWorld;
 using granular::Lever;
 
+namespace lever_test {
+
 namespace {
 
 constexpr double R = 1e-3, h = 1e-6;
@@ -151,3 +153,5 @@ TEST_CASE("force and point of application of a contact record give the torques o
     CHECK(of_pair > 20);
     CHECK(of_plate > 20);
 }
+
+}  // namespace lever_test

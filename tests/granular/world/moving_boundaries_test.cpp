@@ -12,6 +12,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::Scheme;
 
+namespace moving_boundaries_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -262,3 +264,5 @@ TEST_CASE("the neighbour list is rebuilt when a particle has moved by half the s
     CHECK(world.rebuilds() == 1);
     CHECK(most == Approx(0.5 * world.particles()[0].mass * 0.25).epsilon(0.01));
 }
+
+}  // namespace moving_boundaries_test

@@ -12,6 +12,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::RemovedParticle;
 
+namespace outflow_test {
+
 namespace {
 
 constexpr double R = 1e-3, g = 9.81;
@@ -159,3 +161,5 @@ TEST_CASE("a world that is saved while particles leave continues with the same b
         CHECK(world.removed().size() == whole.removed().size());
     }
 }
+
+}  // namespace outflow_test

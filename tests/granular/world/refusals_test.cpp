@@ -14,6 +14,8 @@ using namespace hilda;
 using namespace hilda::tests;
 using granular::Boundary;
 
+namespace refusals_test {
+
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN(),
@@ -229,3 +231,5 @@ TEST_CASE("a checkpoint of a world with other options is refused with the reason
     CHECK(read(world(plain, false, 1, 2), world(plain, true, 1, 2).to_bytes("run")) ==
           "checkpoint: the checkpoint has orientations, but /orientation of this case is false");
 }
+
+}  // namespace refusals_test

@@ -12,6 +12,8 @@
 using namespace hilda::granular;
 using Shape = Boundary::Shape;
 
+namespace round_boundaries_test {
+
 namespace {
 
 constexpr double R = 2e-3;  // [m]
@@ -190,3 +192,5 @@ TEST_CASE("the narrow end of a light frustum shortens the collision time, whiche
         CHECK(collision_time(6 * R, narrow) / equal == Approx(ratio).epsilon(1e-6));
     }
 }
+
+}  // namespace round_boundaries_test

@@ -11,6 +11,8 @@ using namespace hilda;
 using namespace hilda::tests;
 using namespace hilda::granular;
 
+namespace stress_test {
+
 namespace {
 
 constexpr double R = 0.01, side = 2.5 * R, A = side * side;
@@ -99,3 +101,5 @@ TEST_CASE("the stress is symmetric without friction, and at rest with friction (
     for (const int k : {0, 4}) CHECK(sigma[k] > 0);
     CHECK(world.contacts().size() > 40);
 }
+
+}  // namespace stress_test

@@ -16,6 +16,8 @@ using granular::Scheme;
 using granular::soft_sphere;
 using granular::WatchRecord;
 
+namespace watch_test {
+
 namespace {
 
 /// Soft spheres of 0.5 m radius in a box from -3 m to 3 m
@@ -383,3 +385,5 @@ TEST_CASE("the watch does not change the results and survives a checkpoint (long
     CHECK(same_bytes);
     CHECK(with->watch().samples == 7000 / granular::watch_limit::interval + 1);
 }
+
+}  // namespace watch_test

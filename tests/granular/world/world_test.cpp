@@ -17,6 +17,8 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::ContactRecord;
 
+namespace world_test {
+
 namespace {
 
 constexpr double R = 1e-3;
@@ -375,3 +377,5 @@ TEST_CASE("a periodic domain that is too narrow is refused with the width that i
                       "times the largest diameter and the skin, got 0.005");
     insert(0.0066007);
 }
+
+}  // namespace world_test

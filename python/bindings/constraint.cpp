@@ -19,7 +19,7 @@ constexpr double displacement =
     1.2e-5;                          // [m, rad], of poses; the result is extrapolated from it and its half
 constexpr double first_step = 2e-3;  // [s, m or rad], the largest of differences along a motion
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, dae::Constraint::max_position_rows, 1>;
+using RowValues = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, dae::Constraint::max_position_rows, 1>;
 
 /// The first or second derivative of f at 0, by differences of fourth order. The step begins with h and is
 /// halved while that reduces the difference of two results, which is the estimate of the error: the motion
@@ -27,19 +27,19 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, dae::Constraint::max_po
 ///
 /// Throws lie::NumericalFailure "differences" if the estimate exceeds `most` relative to the derivative.
 template <class Function>
-Rows derivative(const Function& f, int order, double h, const std::string& what)
+RowValues derivative(const Function& f, int order, double h, const std::string& what)
 {
     constexpr int halvings = 14;
     constexpr double enough = 1e-11, most = 1e-5, least = 1e-7;
-    const Rows zero = order == 2 ? Rows(f(0)) : Rows();
-    Rows far_plus = f(2 * h), far_minus = f(-2 * h), best;
+    const RowValues zero = order == 2 ? RowValues(f(0)) : RowValues();
+    RowValues far_plus = f(2 * h), far_minus = f(-2 * h), best;
     double error = std::numeric_limits<double>::infinity(), size = 0;
-    Rows before;
+    RowValues before;
     for (int k = 0; k < halvings; ++k, h *= 0.5) {
-        const Rows plus = f(h), minus = f(-h);
-        Rows now = order == 1
-                       ? Rows((8 * (plus - minus) - (far_plus - far_minus)) / (12 * h))
-                       : Rows((16 * (plus + minus) - (far_plus + far_minus) - 30 * zero) / (12 * h * h));
+        const RowValues plus = f(h), minus = f(-h);
+        RowValues now =
+            order == 1 ? RowValues((8 * (plus - minus) - (far_plus - far_minus)) / (12 * h))
+                       : RowValues((16 * (plus + minus) - (far_plus + far_minus) - 30 * zero) / (12 * h * h));
         far_plus = plus, far_minus = minus;
         if (k > 0) {
             const double change = (now - before).template lpNorm<Eigen::Infinity>();
@@ -126,8 +126,8 @@ void PythonConstraint::differences(const Arguments& x, Derivatives& out) const
                 body.A = body.A * lie::exp(by * lie::Vec3::Unit(c % 3));
             return phi_at({bi, bj, x.t}, 0);
         };
-        const auto difference = [&](double d) { return Rows((displaced(d) - displaced(-d)) / (2 * d)); };
-        const Rows fine = difference(0.5 * displacement), coarse = difference(displacement);
+        const auto difference = [&](double d) { return RowValues((displaced(d) - displaced(-d)) / (2 * d)); };
+        const RowValues fine = difference(0.5 * displacement), coarse = difference(displacement);
         (c < 6 ? out.C_i : out.C_j).col(c % 6) = (4 * fine - coarse) / 3;
     }
 }

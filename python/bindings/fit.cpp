@@ -44,7 +44,7 @@ dae::Description read(const Source& from, std::span<const std::string> changes)
 }
 
 /// Runs the fit on another thread, and handles the signals of Python meanwhile.
-studies::FitResult run(studies::FitProblem& problem)
+studies::FitResult run_fit(studies::FitProblem& problem)
 {
     std::atomic<bool> is_stopped = false;
     problem.stop = &is_stopped;
@@ -132,7 +132,7 @@ py::dict fit(const Source& source, const std::vector<Parameter>& parameters, stu
                                       .high = high,
                                       .scale = scale});
     }
-    return as_dict(run(problem));
+    return as_dict(run_fit(problem));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ py::array view(const py::object& owner, bool writable, double* first, std::vecto
 }
 
 template <lie::Vec3 lie::Motion::*vector>
-py::array vectors(const py::object& self)
+py::array motion_vectors(const py::object& self)
 {
     auto& state = self.cast<StateObject&>();
     std::vector<lie::Motion>& body = state.x.body;
@@ -56,18 +56,18 @@ The arrays share the memory of the state. Those of an observer or a force are re
                 s.x.t = t;
             },
             "Time [s]")
-        .def_property_readonly("r", &vectors<&lie::Motion::r>,
+        .def_property_readonly("r", &motion_vectors<&lie::Motion::r>,
                                "Positions of the centres of mass [m], global frame; shape (bodies, 3)")
-        .def_property_readonly("rdot", &vectors<&lie::Motion::rdot>,
+        .def_property_readonly("rdot", &motion_vectors<&lie::Motion::rdot>,
                                "Velocities of the centres of mass [m/s], global frame; shape (bodies, 3)")
-        .def_property_readonly("rddot", &vectors<&lie::Motion::rddot>,
+        .def_property_readonly("rddot", &motion_vectors<&lie::Motion::rddot>,
                                "Accelerations [m/s^2], global frame; shape (bodies, 3)")
         .def_property_readonly(
             "A", &orientations,
             "Rotation matrices from the body frames to the global frame; shape (bodies, 3, 3)")
-        .def_property_readonly("omega_bar", &vectors<&lie::Motion::omega_bar>,
+        .def_property_readonly("omega_bar", &motion_vectors<&lie::Motion::omega_bar>,
                                "Angular velocities [rad/s], body frames; shape (bodies, 3)")
-        .def_property_readonly("omegadot_bar", &vectors<&lie::Motion::omegadot_bar>,
+        .def_property_readonly("omegadot_bar", &motion_vectors<&lie::Motion::omegadot_bar>,
                                "Angular accelerations [rad/s^2], body frames; shape (bodies, 3)")
         .def_property_readonly("lambda_", &multipliers, "Multipliers of the constraint rows; shape (rows,)")
         .def(

@@ -12,7 +12,7 @@ namespace hilda::granular {
 
 namespace {
 
-std::string text_of(const Vec3& v)
+std::string vector_text(const Vec3& v)
 {
     return io::shortest(v.x) + ' ' + io::shortest(v.y) + ' ' + io::shortest(v.z);
 }
@@ -50,12 +50,12 @@ public:
             const double density = p.mass > 0 ? p.mass / sphere_volume(p.radius)
                                               : materials[static_cast<std::size_t>(p.material)].density;
             append(std::to_string(p.id + 1) + ' ' + std::to_string(type_of(p.material)) + ' ' +
-                   io::shortest(2 * p.radius) + ' ' + io::shortest(density) + ' ' + text_of(p.r) + '\n');
+                   io::shortest(2 * p.radius) + ' ' + io::shortest(density) + ' ' + vector_text(p.r) + '\n');
         }
         append("\nVelocities\n\n");
         for (const Particle& p : particles)
-            append(std::to_string(p.id + 1) + ' ' + text_of(p.fixed ? Vec3{0, 0, 0} : p.v) + ' ' +
-                   text_of(p.omega) + '\n');
+            append(std::to_string(p.id + 1) + ' ' + vector_text(p.fixed ? Vec3{0, 0, 0} : p.v) + ' ' +
+                   vector_text(p.omega) + '\n');
     }
 
 private:
@@ -193,9 +193,9 @@ private:
         const std::string side = b.inside != 0 ? " side in" : " side out";
         switch (b.shape) {
             case Boundary::Shape::plane:
-                return "plane " + text_of(b.r) + ' ' + text_of(b.axis);
+                return "plane " + vector_text(b.r) + ' ' + vector_text(b.axis);
             case Boundary::Shape::sphere:
-                return "sphere " + text_of(b.r) + ' ' + io::shortest(b.radius) + side;
+                return "sphere " + vector_text(b.r) + ' ' + io::shortest(b.radius) + side;
             case Boundary::Shape::cylinder: {
                 const std::string size = ' ' + io::shortest(b.radius) + " INF INF" + side;
                 const std::string x = io::shortest(b.r.x), y = io::shortest(b.r.y), z = io::shortest(b.r.z);
@@ -253,7 +253,7 @@ private:
         if (has_fixed()) text += "fix             freeze fixed freeze\n";
         if (const double g = w.gravity().norm(); g > 0)
             text += "fix             gravity moving gravity " + io::shortest(g) + " vector " +
-                    text_of(w.gravity()) + '\n';
+                    vector_text(w.gravity()) + '\n';
         text += "timestep        " + io::shortest(c.h) +
                 "\n\ncompute         ke moving ke\ncompute         rotation moving erotate/sphere\n"
                 "variable        t equal time\nvariable        E equal c_ke+c_rotation\n"

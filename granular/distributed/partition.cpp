@@ -10,7 +10,7 @@ namespace hilda::granular {
 
 namespace {
 
-void check(int code, const char* function)
+void check_partition(int code, const char* function)
 {
     if (code == ZOLTAN_FATAL || code == ZOLTAN_MEMERR)
         throw std::runtime_error(std::string(function) + " of Zoltan has failed");
@@ -72,7 +72,7 @@ Partition::Partition(const Communicator& all) : all(all), zoltan(Zoltan_Create(a
                                       {"RETURN_LISTS", "NONE"},
                                       {"REMAP", "0"},
                                       {"IMBALANCE_TOL", "1.01"}})
-        check(Zoltan_Set_Param(zoltan, name, value), "Zoltan_Set_Param");
+        check_partition(Zoltan_Set_Param(zoltan, name, value), "Zoltan_Set_Param");
 }
 
 Partition::~Partition() { Zoltan_Destroy(&zoltan); }
@@ -103,10 +103,10 @@ void Partition::make(const CellGrid& cells, std::int32_t shift, const std::vecto
     ZOLTAN_ID_PTR import_global = nullptr, import_local = nullptr, export_global = nullptr,
                   export_local = nullptr;
     int *import_process = nullptr, *import_part = nullptr, *export_process = nullptr, *export_part = nullptr;
-    check(Zoltan_LB_Partition(zoltan, &changes, &global, &local, &imports, &import_global, &import_local,
-                              &import_process, &import_part, &exports, &export_global, &export_local,
-                              &export_process, &export_part),
-          "Zoltan_LB_Partition");
+    check_partition(Zoltan_LB_Partition(zoltan, &changes, &global, &local, &imports, &import_global,
+                                        &import_local, &import_process, &import_part, &exports,
+                                        &export_global, &export_local, &export_process, &export_part),
+                    "Zoltan_LB_Partition");
     Zoltan_LB_Free_Part(&import_global, &import_local, &import_process, &import_part);
     Zoltan_LB_Free_Part(&export_global, &export_local, &export_process, &export_part);
 }
@@ -117,7 +117,7 @@ int Partition::found_owner(std::uint32_t block) const
     double x[3];
     place(block, x);
     int process = 0, part = 0;
-    check(Zoltan_LB_Point_PP_Assign(zoltan, x, &process, &part), "Zoltan_LB_Point_PP_Assign");
+    check_partition(Zoltan_LB_Point_PP_Assign(zoltan, x, &process, &part), "Zoltan_LB_Point_PP_Assign");
     return process;
 }
 

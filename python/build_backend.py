@@ -77,7 +77,9 @@ def metadata():
 def libraries():
     """The prefix in which CMake finds the libraries. Builds those of build/release."""
     if given := os.environ.get("HILDA_LIBRARIES"):
-        return pathlib.Path(given).resolve()
+        prefix = pathlib.Path(given).resolve()
+        check_commit(prefix)
+        return prefix
     folder = ROOT / "build" / "release"
     cache = folder / "CMakeCache.txt"
     options = ["-DHILDA_WITH_GRAINS=ON"]
@@ -91,6 +93,22 @@ def libraries():
     command(["cmake", "--preset", "release", *options])
     build(folder, "hilda_library", *(f"hilda_{room}_library" for room in ("granular", "reference", "studies")))
     return folder
+
+
+def check_commit(prefix):
+    """The modules are compiled with the headers of these sources, which must be those of the libraries."""
+    headers = [prefix / folder / "hilda/version.hpp" for folder in ("generated", "include/hilda")]
+    header = next((file for file in headers if file.exists()), None)
+    if header is None:
+        raise SystemExit(f"hilda: error: HILDA_LIBRARIES: {prefix} is neither a build folder nor the prefix of an installation")
+    theirs = re.search(r' git = R"\((.*)\)"', header.read_text())[1]
+    ours = "unknown"
+    if shutil.which("git") and (ROOT / ".git").exists():
+        describe = ["git", "describe", "--tags", "--always", "--dirty"]
+        ours = subprocess.run(describe, cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip() or "unknown"
+    if theirs != ours:
+        raise SystemExit(f"hilda: error: HILDA_LIBRARIES: {prefix} has the libraries of commit {theirs}, and the sources are those of "
+                         f"{ours}; build or install them again")
 
 
 def compile_modules():

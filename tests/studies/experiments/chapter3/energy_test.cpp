@@ -152,7 +152,7 @@ TEST_CASE("with --strict a study with a warning about a run ends with exit code 
     CHECK(call(in, {"study", "friction", "--strict"}).code == 2);
 }
 
-TEST_CASE("--check compares the studies of Chapter 3 with the statements of the dissertation",
+TEST_CASE("the option --check compares the studies of Chapter 3 with the statements of the dissertation",
           "[studies][energy]")
 {
     const Scratch in;

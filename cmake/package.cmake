@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Debian packages, by cmake --build FOLDER --target package: hilda (programs), libhildaX.Y, libhilda-dev, python3-hilda, hilda-doc.
 if(NOT TARGET hilda_granular_program)
+    # of an earlier configuration with grains: CMake reserves the name of the target while these files exist
+    file(REMOVE "${PROJECT_BINARY_DIR}/CPackConfig.cmake" "${PROJECT_BINARY_DIR}/CPackSourceConfig.cmake")
     add_custom_target(package
         COMMAND ${CMAKE_COMMAND} -E echo "hilda: error: the packages contain grains, and Thrust was not found (Debian: apt-get install libthrust-dev)"
         COMMAND ${CMAKE_COMMAND} -E false VERBATIM)

@@ -43,13 +43,12 @@ const std::vector<Kind>& kinds()
         {.name = "integrator",
          .word = "my-scheme",
          .files = {{"scheme.cpp", plugin_scheme_text}, {"CMakeLists.txt", plugin_cmake_text}},
-         .commands =
-             "written: {0}/scheme.cpp, an integrator of second order, and {0}/CMakeLists.txt\n\n"
-             "  cmake -S {0} -B {0}/build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=PREFIX\n"
-             "  cmake --build {0}/build\n"
-             "  hilda --load {0}/build/{1}.so study convergence --integrator rA-half-2,{1}\n\n"
-             "PREFIX: the build folder of HILDA, build/release, or where it is installed. "
-             "docs/extending/integrator.md describes the interface.\n"},
+         .commands = "written: {0}/scheme.cpp, an integrator of second order, and {0}/CMakeLists.txt\n\n"
+                     "  cmake -S {0} -B {0}/build -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=PREFIX\n"
+                     "  cmake --build {0}/build\n"
+                     "  hilda --load {0}/build/{1}.so study convergence --integrator rA-half-2,{1}\n\n"
+                     "PREFIX: the build folder of HILDA, build/release, or where it is installed. "
+                     "docs/extending/integrator.md describes the interface.\n"},
         {.name = "granular-law",
          .word = "my-law",
          .files = {{"normal/my_law.hpp", law_header_text},

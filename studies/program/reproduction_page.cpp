@@ -144,7 +144,7 @@ std::string criteria_table(const std::vector<Criterion>& criteria)
 /// The text of the study; a long text is folded
 std::string text_block(const std::string& text)
 {
-    const std::string block = in("pre", html(text)) + '\n';
+    std::string block = in("pre", html(text)) + '\n';
     const long lines = std::count(text.begin(), text.end(), '\n');
     if (lines <= most_lines) return block;
     return in("details", in("summary", fmt::format("table, {} lines", lines)) + '\n' + block) + '\n';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Studies that the tests divide into shards or distribute over MPI ranks.
+/// Studies that the tests divide into shards.
 
 #pragma once
 

@@ -5,8 +5,8 @@
 # the tests of the lowest room and used by all tests, and those of granular and of its tests, without Eigen and with the flags of
 # granular. A source file must include what it uses: the preset `tidy` builds without precompiled headers.
 #
-# Studies and tests are compiled with -O1 in a Release build, a quarter less time: the loops that take the time of a run are in the other
-# rooms. The optimisation is part of a precompiled header.
+# The optimisation is part of a precompiled header, so it is set here as well. Studies and tests are compiled with -O1 in a Release
+# build, a quarter less time. The loops that take the time of a run are in the other rooms, which are compiled with -O3.
 #
 # nlohmann/json.hpp, which tests use, is not part of them. Its literal operators instantiate the parser, which costs 0.6 s in
 # each file that sees the header, and most files do not use it. Headers with compile definitions (fmt) cannot be part of them,

@@ -89,7 +89,7 @@ def libraries():
             raise SystemExit(f"hilda: error: build/release was configured with {generator[1]}, and the presets use Ninja; "
                              "remove the folder: rm -r build/release")
     else:
-        options += ["-DHILDA_TESTS=OFF", "-DHILDA_WITH_PYTHON=OFF"]
+        options.append("-DHILDA_TESTS=OFF")  # tests/run adds them
     command(["cmake", "--preset", "release", *options])
     build(folder, "hilda_library", *(f"hilda_{room}_library" for room in ("granular", "reference", "studies")))
     return folder

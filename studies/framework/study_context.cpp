@@ -204,6 +204,8 @@ void StudyContext::jobs(long count, const std::function<void(long)>& job,
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
 {
+    if (criteria.empty())
+        io::message("hilda: warning: --check: there is no criterion for these problems and integrators\n");
     criteria_passed = studies::evaluate(criteria, text, json);
 }
 

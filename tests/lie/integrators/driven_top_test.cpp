@@ -6,7 +6,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
-#include "tests/lie/state_numbers.hpp"
+#include "tests/lie/one_body_state.hpp"
 
 #include <catch2/catch.hpp>
 

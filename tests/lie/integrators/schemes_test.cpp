@@ -8,7 +8,7 @@
 #include "lie/solver/linear_solver.hpp"
 #include "lie/system.hpp"
 #include "lie/trajectory.hpp"
-#include "tests/lie/state_numbers.hpp"
+#include "tests/lie/one_body_state.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/spinning_top.hpp"
 

@@ -6,18 +6,18 @@
 # granular. A source file must include what it uses: the preset `tidy` builds without precompiled headers.
 #
 # The optimisation is part of a precompiled header, so it is set here as well. Studies and tests are compiled with -O1 in a Release
-# build, a quarter less time. The loops that take the time of a run are in the other rooms, which are compiled with -O3.
+# build, a quarter less time.
 #
 # nlohmann/json.hpp, which tests use, is not part of them. Its literal operators instantiate the parser, which costs 0.6 s in
 # each file that sees the header, and most files do not use it. Headers with compile definitions (fmt) cannot be part of them,
 # because the definitions differ between the rooms.
 function(hilda_precompile target)
     if(target MATCHES "^(test_|studies_|program_)")
-        # Without the warnings that -O1 of GCC 12 falsely gives for matrices of Eigen; the code of the other rooms is compiled with -O2.
+        # Without the warnings that -O1 of GCC 12 falsely gives for matrices of Eigen, and with -O2 and -O3 not.
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1$<SEMICOLON>-Wno-maybe-uninitialized>)
     endif()
-    if(target MATCHES "^(lie|dae|contact|reference)_objects$")
-        # GCC inlines the small loops of Eigen, which take a tenth of a step, with -O3 only.
+    list(TRANSFORM hilda_optimised_rooms APPEND "_objects" OUTPUT_VARIABLE optimised)
+    if(target IN_LIST optimised)
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
     endif()
     if(NOT HILDA_PCH)

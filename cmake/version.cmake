@@ -6,6 +6,10 @@ string(TOUPPER "${CMAKE_BUILD_TYPE}" hilda_build_type)
 list(JOIN hilda_flags " " hilda_version_flags)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${hilda_build_type}}" hilda_version_base)
 string(PREPEND hilda_version_flags "${hilda_version_base} ")
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT HILDA_NATIVE)
+    list(JOIN hilda_optimised_rooms ", " hilda_version_rooms)
+    string(APPEND hilda_version_flags " (-O3 in ${hilda_version_rooms})")
+endif()
 
 set(hilda_generated "${PROJECT_BINARY_DIR}/generated")
 set(hilda_git "@hilda_git@") # replaced at each build

@@ -29,7 +29,8 @@ function(granular_compile_loops name root variable)
     set(objects "")
     # GCC copies structures in parts of 128 bits by default. A load of 256 bits behind such a store waits until it is in the cache.
     set(move_v3 -mmove-max=256 -mstore-max=256)
-    set(move_v4 -mmove-max=512 -mstore-max=512)
+    # It zeroes structures of more than 128 bytes with rep stos, which takes a twentieth of a step of 10 000 particles.
+    set(move_v4 -mmove-max=512 -mstore-max=512 -mmemset-strategy=vector_loop:2048:noalign,libcall:-1:noalign)
     foreach(set v3 v4)
         set(target ${name}_${set})
         # An archive, not an object library: of the latter's files the generator Make knows no rule outside of their target.

@@ -93,6 +93,30 @@ private:
     std::uint64_t not_summed = 0;      ///< number of terms that could not be added, and of overflows
 };
 
+/// Part of a FixedSum with terms that are floats. The sum is the same bit by bit.
+///
+/// A double holds the sum of a few floats exactly, unless they differ by a factor of 2^29. A term with
+/// which the sum would be rounded is added to the FixedSum itself.
+class FloatPart {
+public:
+    HILDA_HD void add(float x, FixedSum& sum)
+    {
+        const double s = part + x, of_x = s - part;
+        const double rounding = (part - (s - of_x)) + (x - of_x);  // exact: Knuth's two-sum
+        // Terms that a FixedSum truncates or counts as not finite are added to it one by one.
+        if (rounding == 0 && abs(s) < 0x1p114 && (abs(x) > 0x1p-87f || x == 0)) {
+            part = s;
+            return;
+        }
+        sum += x;
+    }
+    /// Adds the part to the sum.
+    HILDA_HD void finish(FixedSum& sum) { sum += part, part = 0; }
+
+private:
+    double part = 0;
+};
+
 /// The same for the components of vectors
 struct FixedVec {
     FixedSum x, y, z;
@@ -108,6 +132,17 @@ struct FixedVec {
         return *this;
     }
     Vec<double> value() const { return {x.value(), y.value(), z.value()}; }
+};
+class FloatPartVec {
+public:
+    HILDA_HD void add(const Vec<float>& v, FixedVec& sum)
+    {
+        x.add(v.x, sum.x), y.add(v.y, sum.y), z.add(v.z, sum.z);
+    }
+    HILDA_HD void finish(FixedVec& sum) { x.finish(sum.x), y.finish(sum.y), z.finish(sum.z); }
+
+private:
+    FloatPart x, y, z;
 };
 
 }  // namespace hilda::granular

@@ -241,12 +241,15 @@ struct AddBoundaryLoads {
     HILDA_HD void operator()(std::uint32_t block) const
     {
         ExternalPart sum;
+        FloatPartVec F;
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             if (pairs.in_contact[which[k]] == 0) continue;
-            sum.F += to_double(pairs.load_of(which[k]).F);
+            const Float4 F_k = pairs.load_of(which[k]).F;
+            F.add({F_k.x, F_k.y, F_k.z}, sum.F);
             if (before != nullptr) add_power(sum, which[k]);
         }
+        F.finish(sum.F);
         out[block] = sum;
     }
     HILDA_HD void add_power(ExternalPart& sum, std::uint32_t n) const

@@ -10,6 +10,7 @@
 #include <vector>
 
 using hilda::granular::FixedSum;
+using hilda::granular::FloatPart;
 
 TEST_CASE("a fixed sum does not depend on the order of its terms and parts", "[granular][fixed-sum]")
 {
@@ -89,5 +90,39 @@ TEST_CASE("the carry of a fixed sum goes through all words, and differences of l
     sum += -0x1p52;
     CHECK(sum.value() == -0x1p-140);
     sum += 0x1p-140;
+    CHECK(sum.value() == 0);
+}
+
+TEST_CASE("a part with terms of float gives the same fixed sum bit by bit", "[granular][fixed-sum]")
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> mantissa(-1, 1);
+    // forces of one size; of sizes that a double cannot hold together; of all sizes of a float
+    for (const int range : {4, 40, 120}) {
+        std::uniform_int_distribution<int> exponent(-range, range == 120 ? 110 : range);
+        FixedSum term_by_term, in_parts;
+        for (int block = 0; block < 100; ++block) {
+            FloatPart part;
+            for (int k = 0; k < 64; ++k) {
+                const float x = k % 7 == 0 ? 0 : std::ldexp(mantissa(random), exponent(random));
+                term_by_term += x, part.add(x, in_parts);
+            }
+            part.finish(in_parts);
+        }
+        CAPTURE(range);
+        CHECK(term_by_term.value() == in_parts.value());
+    }
+    for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                          std::numeric_limits<float>::max()}) {
+        FixedSum sum;
+        FloatPart part;
+        part.add(1, sum), part.add(x, sum), part.add(1, sum), part.finish(sum);
+        CHECK(std::isnan(sum.value()));
+    }
+    // The terms are truncated one by one to multiples of 2^-140, not their sum.
+    FixedSum sum;
+    FloatPart part;
+    for (int k = 0; k < 4; ++k) part.add(0x1.8p-141f, sum);
+    part.finish(sum);
     CHECK(sum.value() == 0);
 }

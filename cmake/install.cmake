@@ -113,8 +113,7 @@ function(hilda_install_headers)
 endfunction()
 hilda_install_headers(
     FOLDERS io lie dae contact reference studies/framework studies/running studies/problems granular/force_models
-    FILES studies/program/run_model.hpp studies/distribution/shard.hpp
-        granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/finite_state.hpp
+    FILES granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/finite_state.hpp
         granular/backend/fixed_sum.hpp
         granular/backend/par.hpp granular/backend/real.hpp
         granular/clumps/clump_template.hpp granular/clumps/sphere_union.hpp

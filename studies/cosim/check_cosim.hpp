@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "studies/program/check_model.hpp"
+#include "studies/running/check_options.hpp"
 
 namespace hilda::studies {
 

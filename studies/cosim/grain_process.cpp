@@ -2,7 +2,7 @@
 #include "studies/cosim/grain_process.hpp"
 
 #include "io/error.hpp"
-#include "studies/program/granular_program.hpp"
+#include "studies/cosim/granular_program.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The function that the program looks up in the module hilda-grains.so.
-#include "studies/program/grains.hpp"
+#include "studies/cosim/grains.hpp"
 
 #include "granular/backend/instruction_set.hpp"
 #include "granular/case/law_names.hpp"

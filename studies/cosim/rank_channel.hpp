@@ -4,7 +4,7 @@
 #pragma once
 
 #include "granular/cosim/channel.hpp"
-#include "studies/distribution/communicator.hpp"
+#include "studies/cosim/communicator.hpp"
 
 #include <memory>
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "studies/program/run_model.hpp"
+#include "studies/running/run_options.hpp"
 
 namespace hilda::studies {
 

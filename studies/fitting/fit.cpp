@@ -8,7 +8,7 @@
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "reference/solvers/least_squares.hpp"
-#include "studies/framework/pool.hpp"
+#include "studies/running/jobs/pool.hpp"
 #include "studies/running/output_columns.hpp"
 
 #include <Eigen/SVD>

@@ -43,18 +43,25 @@ struct Problem {
     bool general_reference = false;  ///< reference_solution is that of a model file
 };
 
+/// Problems NAME_N of N equal parts
+struct ProblemFamily {
+    std::string name;
+    int most = 1;  ///< largest N
+    Problem (*member)(int N, const std::string& name) = nullptr;
+};
+
 }  // namespace hilda::studies
 
 extern template class hilda::io::Registry<hilda::studies::Problem>;
 
 namespace hilda::studies {
 
-/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. n_pendulum
-/// represents the family n_pendulum_N, and n_four_bar the family n_four_bar_N.
+/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. A family has one member
+/// in this list, with the name of the family.
 inline const std::vector<Problem>& problems() { return io::Registry<Problem>::all(); }
 
-/// The problem with this name: one of the list, n_pendulum_N with N from 1 to 100000, or n_four_bar_N with N
-/// from 1 to 10000. lie::InvalidInput with the nearest name otherwise.
+/// The problem with this name: one of the list, or a member of a family. lie::InvalidInput with the nearest name
+/// otherwise.
 Problem problem(const std::string& name);
 
 /// The problem with this name, or the model file at this path. The reference solution of a model file is

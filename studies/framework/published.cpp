@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/published.hpp"
 
+#include "io/formats/csv_table.hpp"
 #include "lie/check.hpp"
 #include "studies/framework/columns.hpp"
-#include "studies/framework/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -55,7 +55,7 @@ std::string quantity_of(const std::string& column, const std::string& run)
     return run == suffix || run.ends_with('-' + suffix) ? column.substr(0, at) : column;
 }
 
-std::vector<ColumnMatch> matches(const CsvTable& table, const std::vector<NamedCurve>& curves)
+std::vector<ColumnMatch> matches(const io::CsvTable& table, const std::vector<NamedCurve>& curves)
 {
     const std::vector<double> t = table.values("t");
     std::vector<ColumnMatch> found;
@@ -100,7 +100,7 @@ const Columns<ColumnMatch> columns_of_matches = {
 
 std::vector<double> PublishedGrid::values(const std::vector<std::pair<double, double>>& cells) const
 {
-    const CsvTable table = read_csv_table(file);
+    const io::CsvTable table = io::read_csv_table(file);
     const auto place = [](const std::vector<double>& values, double value) {
         return std::find_if(values.begin(), values.end(),
                             [&](double v) { return std::abs(v - value) < 1e-9; }) -
@@ -127,7 +127,7 @@ std::vector<double> PublishedGrid::values(const std::vector<std::pair<double, do
 
 void compare_with_published(StudyContext& s, const std::vector<NamedCurve>& curves)
 {
-    const std::vector<ColumnMatch> found = matches(read_csv_table(s.options.against), curves);
+    const std::vector<ColumnMatch> found = matches(io::read_csv_table(s.options.against), curves);
     double largest = 0;
     for (const ColumnMatch& m : found)
         if (m.nearest) largest = std::max(largest, m.relative());

@@ -8,8 +8,8 @@
 #include "io/message.hpp"
 #include "lie/settings.hpp"
 #include "reference/solvers/index1.hpp"
-#include "studies/framework/pool.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/jobs/pool.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,8 @@
 
 #include "io/registry.hpp"
 #include "lie/settings.hpp"
-#include "studies/distribution/shard.hpp"
+#include "studies/running/figures.hpp"
+#include "studies/running/jobs/shard.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -65,6 +66,7 @@ struct StudyOptions {
     std::vector<std::string> arguments;  ///< of the command line, for hilda collect
     bool plot = true, quiet = false, json = false;
     std::vector<std::string> figure_formats;  ///< empty: png
+    DrawFigures draw;                         ///< empty: no figures
     bool latex = false;                       ///< write study.tex
     std::vector<Expectation> expect;
     std::string command_line;          ///< recorded in study.json

@@ -8,9 +8,9 @@
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "io/provenance.hpp"
-#include "studies/running/latex.hpp"
+#include "studies/framework/latex.hpp"
+#include "studies/running/figures.hpp"
 #include "studies/running/named_model.hpp"
-#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
@@ -306,7 +306,8 @@ void StudyContext::write(const io::Json& whole_json) const
     }
     for (const std::string& figure : figures)
         remove_figure(options.output, figure);  // those of an earlier run
-    if (options.plot && plot(name + ".py", options.output, {.formats = options.figure_formats}))
+    if (options.plot && options.draw &&
+        !options.draw(name + ".py", options.output, options.figure_formats).empty())
         for (const std::string& figure : figures)
             for (const std::string& file : existing_figures(options.output, figure, options.figure_formats))
                 written.push_back(file);

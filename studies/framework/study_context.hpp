@@ -7,11 +7,11 @@
 #include "io/json.hpp"
 #include "io/option_values.hpp"
 #include "studies/framework/acceptance.hpp"
-#include "studies/framework/pool.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/running/finished_jobs.hpp"
+#include "studies/running/jobs/finished_jobs.hpp"
+#include "studies/running/jobs/pool.hpp"
 
 #include <algorithm>
 #include <map>

@@ -5,8 +5,8 @@
 
 #include "io/error.hpp"
 #include "studies/framework/columns.hpp"
-#include "studies/framework/pool.hpp"
 #include "studies/framework/study_context.hpp"
+#include "studies/running/jobs/pool.hpp"
 
 #include <numeric>
 #include <type_traits>

@@ -11,8 +11,8 @@
 #include "io/provenance.hpp"
 #include "studies/kinematics/drives.hpp"
 #include "studies/kinematics/prescribed_motion.hpp"
+#include "studies/running/figures.hpp"
 #include "studies/running/named_model.hpp"
-#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 #include "studies/running/sink.hpp"
 #include "studies/running/tables/run_table.hpp"
@@ -251,9 +251,9 @@ int run_kinematics(const KinematicsOptions& options)
     if (drives) {
         drives->table->close();
         for (const std::string& file : drives->table->files()) files.push_back(file);
-        if (options.plot && files.back() == "drives.csv" && reached.rows > 1)
-            if (const auto figures = plot("drives.py", directory, {.formats = options.figure_formats}))
-                files.insert(files.end(), figures->begin(), figures->end());
+        if (options.plot && options.draw && files.back() == "drives.csv" && reached.rows > 1)
+            for (const std::string& file : options.draw("drives.py", directory, options.figure_formats))
+                files.push_back(file);
     }
     files.insert(files.begin(), "model.json");
     files.emplace_back("summary.json");

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "io/sink.hpp"
+#include "studies/running/figures.hpp"
 
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct KinematicsOptions {
     std::string motion;    ///< CSV file with the motions of joints and drivers; "": those of the model
     bool plot = true;
     std::vector<std::string> figure_formats;
+    DrawFigures draw;  ///< empty: no figures
 
     bool json = false, quiet = false;
     std::string command_line;  ///< recorded in summary.json

@@ -2,11 +2,11 @@
 #include "studies/kinematics/prescribed_motion.hpp"
 
 #include "io/error.hpp"
+#include "io/formats/csv_table.hpp"
 #include "io/json.hpp"
 #include "io/json_source.hpp"
 #include "io/nearest.hpp"
 #include "lie/so3.hpp"
-#include "studies/framework/csv_table.hpp"
 
 #include <fmt/format.h>
 
@@ -80,7 +80,7 @@ io::Json drive_of(const dae::Description& d, const io::Json& joint, const std::v
 }
 
 /// A column of numbers. Throws io::InvalidInput for an empty field.
-std::vector<double> finite_values(const CsvTable& table, const std::string& column)
+std::vector<double> finite_values(const io::CsvTable& table, const std::string& column)
 {
     std::vector<double> all = table.values(column);
     for (std::size_t k = 0; k < all.size(); ++k)
@@ -94,7 +94,7 @@ std::vector<double> finite_values(const CsvTable& table, const std::string& colu
 
 dae::Description with_motion(const dae::Description& d, const std::string& file)
 {
-    const CsvTable table = read_csv_table(file);
+    const io::CsvTable table = io::read_csv_table(file);
     const std::vector<double> t = finite_values(table, time_column);
     if (table.columns.size() < 2)
         throw io::InvalidInput(file + ": there must be a column for a joint or a driver, besides t");

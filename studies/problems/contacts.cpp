@@ -5,8 +5,8 @@
 
 #include "dae/model_file.hpp"
 #include "lie/schemes.hpp"
-#include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/framework/problem.hpp"
+#include "studies/problems/evolving_reference.hpp"
 
 namespace hilda::studies {
 

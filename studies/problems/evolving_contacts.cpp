@@ -2,8 +2,8 @@
 /// Models with contact constraints, whose contact points are unknowns: a ball in a bowl (Fang 2022, Sec.
 /// 5.5), a rocking and a wobbling ellipsoid, a rattleback.
 
-#include "studies/experiments/chapter5/evolving_reference.hpp"
 #include "studies/framework/problem.hpp"
+#include "studies/problems/evolving_reference.hpp"
 
 namespace hilda::studies {
 

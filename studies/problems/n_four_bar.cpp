@@ -160,6 +160,8 @@ Problem n_four_bar(int N, const std::string& name)
 namespace {
 
 const bool registered_n_four_bar = io::Registry<Problem>::add(n_four_bar(2, family));
+const bool registered_four_bars =
+    io::Registry<ProblemFamily>::add({.name = family, .most = most_windows, .member = n_four_bar});
 
 }  // namespace
 

@@ -102,6 +102,8 @@ Problem spinning_n_pendulum(int N, std::uint64_t seed)
 namespace {
 
 const bool two = io::Registry<Problem>::add(n_pendulum(2, pendulum_family));
+const bool pendulums =
+    io::Registry<ProblemFamily>::add({.name = pendulum_family, .most = most_bars, .member = n_pendulum});
 
 const bool spin = io::Registry<Problem>::add(chain(
     "n_pendulum_2_spin",

@@ -4,8 +4,8 @@
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
 #include "studies/problems/n_pendulum.hpp"
+#include "studies/running/figures.hpp"
 #include "studies/running/frames/vtk.hpp"
-#include "studies/running/plot.hpp"
 
 #include <fmt/format.h>
 

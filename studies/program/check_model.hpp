@@ -3,19 +3,9 @@
 
 #pragma once
 
-#include <string>
-#include <vector>
+#include "studies/running/check_options.hpp"
 
 namespace hilda::studies {
-
-struct CheckOptions {
-    std::string model;             ///< name of a built-in model, or path of a model file
-    std::vector<std::string> set;  ///< /json/pointer=VALUE
-    std::string normal_rows;       ///< of contact constraints: tangent or fixed-xy; "": the model's
-    bool fix_initial = false;      ///< also report the change by the projection onto the constraints
-    std::string write;             ///< file for the model with the projected initial state; "": none
-    bool json = false, quiet = false;
-};
 
 /// Prints the numbers of bodies, constraints, forces and contacts, the rank of the constraints, the initial
 /// residuals, the energy and the largest reactions. Returns the exit code. Writes the file

@@ -5,6 +5,7 @@
 #include "io/program.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/running/provenance.hpp"
 
@@ -191,6 +192,7 @@ int collect(const CollectOptions& collected, const JobRecords& shards, const std
     options.resume = false;
     options.plot = of.plot;
     options.figure_formats = of.figure_formats;
+    options.draw = draw_figures;
     options.latex = of.latex;
     options.quiet = of.quiet;
     options.json = of.json;

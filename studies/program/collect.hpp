@@ -4,7 +4,7 @@
 #pragma once
 
 #include "studies/framework/study.hpp"
-#include "studies/running/finished_jobs.hpp"
+#include "studies/running/jobs/finished_jobs.hpp"
 
 #include <functional>
 #include <string>

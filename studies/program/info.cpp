@@ -6,10 +6,10 @@
 #include "io/provenance.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
+#include "studies/cosim/grains.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/program/grains.hpp"
-#include "studies/running/plot.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 #include "io/message.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/running/sink.hpp"
 
 namespace hilda::studies {
@@ -58,6 +59,7 @@ void add_run_options(CLI::App& c, RunArguments& to)
     value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
           assign(o.checkpoint, nonnegative_number));
     io::add_sink_options<RunSetup>(c, o.outputs);
+    o.draw = draw_figures;
     c.add_flag("--plot", o.plot, "draw trajectory.png as well");
     c.add_flag(
         "--error", o.error,
@@ -143,6 +145,7 @@ void add_inverse_options(CLI::App& c, KinematicsOptions& o)
           "CSV file with a column t [s] and one for each motion: of a driver, or of a revolute [rad] or "
           "translational [m] joint, from the start; default: the drivers of the model",
           assign(o.motion, [](const std::string&, const std::string& text) { return text; }));
+    o.draw = draw_figures;
     add_no_plot(c, "do not draw drives.png", o.plot);
     add_figure_format(c, o.figure_formats);
 }

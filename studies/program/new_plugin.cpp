@@ -6,7 +6,7 @@
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
-#include "studies/program/grains.hpp"
+#include "studies/cosim/grains.hpp"
 
 #include <fmt/format.h>
 

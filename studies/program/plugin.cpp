@@ -14,7 +14,7 @@
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/plot.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/running/plugin_interface.hpp"
 #include "studies/running/sink.hpp"
 

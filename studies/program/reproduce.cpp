@@ -9,7 +9,7 @@
 #include "io/progress.hpp"
 #include "io/provenance.hpp"
 #include "studies/program/reproduction.hpp"
-#include "studies/running/finished_jobs.hpp"
+#include "studies/running/jobs/finished_jobs.hpp"
 #include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>

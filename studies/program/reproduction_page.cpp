@@ -5,6 +5,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
+#include "studies/program/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -25,12 +26,6 @@ std::string text_of(const std::string& file)
 {
     std::error_code error;
     return fs::is_regular_file(file, error) ? io::read_file(file, most_bytes) : "";
-}
-
-std::string last_line(std::string text)
-{
-    while (text.ends_with('\n')) text.pop_back();
-    return text.substr(text.rfind('\n') + 1);
 }
 
 double number_of(const io::Json& object, const char* key)

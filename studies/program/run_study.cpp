@@ -3,11 +3,11 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
-#include "studies/distribution/communicator.hpp"
+#include "studies/cosim/communicator.hpp"
+#include "studies/cosim/grains.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
-#include "studies/program/grains.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -105,6 +105,7 @@ void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
     values(c, "--expect", "KEY=VALUE[+-TOL]",
            "expected value of a result; exit code 6 if the result differs by more than TOL; repeatable",
            append_one(o.expect, expectation));
+    o.draw = draw_figures;
     add_no_plot(c, "draw no figures", o.plot);
     add_figure_format(c, o.figure_formats);
     c.add_flag("--latex", o.latex,

@@ -5,9 +5,9 @@
 
 #include "studies/fitting/fit_command.hpp"
 #include "studies/framework/study.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/program/reproduce.hpp"
-#include "studies/running/frames/view.hpp"
-#include "studies/running/plot.hpp"
+#include "studies/program/view.hpp"
 
 #include <CLI/CLI.hpp>
 

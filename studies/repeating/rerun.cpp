@@ -5,7 +5,7 @@
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "io/provenance.hpp"
-#include "studies/program/granular_program.hpp"
+#include "studies/cosim/granular_program.hpp"
 #include "studies/repeating/compare_results.hpp"
 #include "studies/running/provenance.hpp"
 

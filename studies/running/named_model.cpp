@@ -4,7 +4,7 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
-#include "studies/framework/problem.hpp"
+#include "lie/check.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -13,10 +13,28 @@ namespace hilda::studies {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// lie::InvalidInput of the last source if none has the model
+NamedText built_in_model(const std::string& name)
+{
+    const std::vector<ModelSource>& sources = io::Registry<ModelSource>::all();
+    for (const ModelSource& source : sources) {
+        try {
+            return source.find(name);
+        } catch (const lie::InvalidInput&) {
+            if (&source == &sources.back()) throw;
+        }
+    }
+    throw lie::InvalidInput("no model is called '" + name + "'; expected the path of a model file");
+}
+
+}  // namespace
+
 bool is_built_in(const std::string& name)
 {
     try {
-        problem(name);
+        built_in_model(name);
         return true;
     } catch (const lie::InvalidInput&) {
         return false;
@@ -37,8 +55,8 @@ dae::Description named_model(const std::string& name_or_path, std::span<const st
     if (is_model_path(name_or_path)) {
         d = dae::load_model(name_or_path, set, normal_rows);
     } else {
-        const Problem built_in = problem(name_or_path);
-        d = dae::read_model(built_in.model, built_in.name, set, normal_rows);
+        const NamedText built_in = built_in_model(name_or_path);
+        d = dae::read_model(built_in.text, built_in.name, set, normal_rows);
     }
     if (!normal_rows.empty() && d.changes.size() == set.size())
         throw io::UsageError("--normal-rows applies to contacts whose normal is a constraint; model " +

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Models by the name or path that the command line gives.
+/// Models by the name or path that the user gives.
 
 #pragma once
+
+#include "io/registry.hpp"
 
 #include <span>
 #include <string>
@@ -13,6 +15,20 @@ struct Description;
 
 namespace hilda::studies {
 
+/// Name and text of a model
+struct NamedText {
+    std::string name, text;
+};
+
+/// A list of models that have names, such as the problems of the studies. A file registers it by
+/// io::Registry<ModelSource>::add.
+struct ModelSource {
+    std::string name;
+    /// The model with this name. Throws lie::InvalidInput if there is none.
+    NamedText (*find)(const std::string& name);
+};
+
+/// Whether a source has a model with this name: a built-in model
 bool is_built_in(const std::string& name);
 
 /// True if the text is the path of a model file: it contains a slash, or ends in .json, or is not the name of

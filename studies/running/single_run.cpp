@@ -16,8 +16,8 @@
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/coupling.hpp"
 #include "studies/running/diagnosis.hpp"
+#include "studies/running/figures.hpp"
 #include "studies/running/named_model.hpp"
-#include "studies/running/plot.hpp"
 #include "studies/running/provenance.hpp"
 #include "studies/running/tables/run_table.hpp"
 #include "studies/running/watch/run_check.hpp"
@@ -460,9 +460,9 @@ void SingleRun::finish(const Recorder& recorder)
     // In this order, so that a run that is killed here can be resumed.
     if (ok && !final_checkpoint.empty()) io::CheckpointFiles(directory).save_final(final_checkpoint);
     if (result.status == "interrupted" && scheme.resumes) result.files.emplace_back("checkpoint");
-    if (options.plot)
-        if (const auto figures = plot("trajectory.py", directory, {.formats = options.figure_formats}))
-            result.files.insert(result.files.end(), figures->begin(), figures->end());
+    if (options.plot && options.draw)
+        for (const std::string& file : options.draw("trajectory.py", directory, options.figure_formats))
+            result.files.push_back(file);
     io::write_file(path("summary.json"), summary(result).text());
     if (ok) io::CheckpointFiles(directory).remove_unfinished();
 }

@@ -8,11 +8,11 @@
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
-#include "studies/program/run_model.hpp"
 #include "studies/running/checkpoint.hpp"
 #include "studies/running/events/run_events.hpp"
 #include "studies/running/progress.hpp"
 #include "studies/running/recorder.hpp"
+#include "studies/running/run_options.hpp"
 #include "studies/running/summary.hpp"
 
 #include <optional>

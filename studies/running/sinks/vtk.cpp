@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// run.pvd and vtk/run-*.vtp: the bodies, joints, springs and contacts, for ParaView.
 
-#include "studies/program/arguments.hpp"
+#include "io/option_values.hpp"
 #include "studies/running/frames/frame_files.hpp"
 #include "studies/running/frames/model_frames.hpp"
 #include "studies/running/sink.hpp"
@@ -46,7 +46,7 @@ std::unique_ptr<io::Sink<RunNode>> make(const RunSetup& run)
 {
     const auto option = run.options.find("--vtk");
     if (option == run.options.end()) return nullptr;
-    const double between = positive_number("--vtk", option->second);
+    const double between = io::positive_number("--vtk", option->second);
     const lie::TimeGrid at = lie::TimeGrid::over(run.end, run.grid.h, between);
     if (at.steps / at.interval + 2 > Snapshots::max_frames)
         throw io::UsageError(fmt::format("{}: --vtk {} gives {} frames, more than {}", run.command, between,
@@ -64,7 +64,7 @@ const bool registered_vtk = io::Registry<SinkType>::add(
                   .value = "DT",
                   .help = "time between ParaView frames of the model [s]; default: no frames",
                   .check = [](const std::string& option,
-                              const std::string& text) { positive_number(option, text); }}},
+                              const std::string& text) { io::positive_number(option, text); }}},
      .make = make,
      .remove = [](const std::string& directory) { FrameFiles::remove(directory, "run"); }});
 

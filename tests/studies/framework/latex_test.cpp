@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/latex.hpp"
+#include "studies/framework/latex.hpp"
 
 #include "studies/framework/table.hpp"
 #include "tests/studies/program.hpp"

@@ -2,7 +2,7 @@
 /// Formats and choice of figures: --figure-format, --integrator and --quantity. What a figure shows is tested
 /// by tests/studies/figures_test.py.
 
-#include "studies/running/plot.hpp"
+#include "studies/program/plot.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/studies/refused.hpp"
 

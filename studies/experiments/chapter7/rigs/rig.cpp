@@ -117,7 +117,7 @@ double Rigs::settle(const RigBed& bed)
                       {"on_timeout", "fail"}}};
     io::write_file(path + "/case.json", io::written(all) + '\n');
     run_case(path + "/case.json", path + "/out");
-    const CsvTable grains = read_csv_table(path + "/out/particles.csv");
+    const io::CsvTable grains = io::read_csv_table(path + "/out/particles.csv");
     const std::vector<double> z = grains.values("z");
     return *std::max_element(z.begin(), z.end()) + bed.R;
 }
@@ -144,8 +144,8 @@ RigRun Rigs::run(const std::string& name, const RigBed& bed, const io::Json& mod
     if (const int code = run_cosim(options); code != io::exit_code::done)
         throw io::Failure(code, "study " + study.name + ": the run " + name +
                                     " has not come to its end; see " + path + "/out/summary.json");
-    RigRun result{.tools = read_csv_table(path + "/out/tools.csv")};
-    const CsvTable grains = read_csv_table(path + "/out/grains/particles.csv");
+    RigRun result{.tools = io::read_csv_table(path + "/out/tools.csv")};
+    const io::CsvTable grains = io::read_csv_table(path + "/out/grains/particles.csv");
     result.x = grains.values("x"), result.y = grains.values("y"), result.z = grains.values("z");
     const std::vector<double> vx = grains.values("vx"), vy = grains.values("vy"), vz = grains.values("vz");
     for (std::size_t k = 0; k < vx.size(); ++k) result.speed.push_back(std::hypot(vx[k], vy[k], vz[k]));

@@ -6,8 +6,8 @@
 
 #pragma once
 
+#include "io/formats/csv_table.hpp"
 #include "io/json.hpp"
-#include "studies/framework/csv_table.hpp"
 #include "studies/framework/table.hpp"
 
 #include <string>
@@ -31,7 +31,7 @@ struct RigBed {
 
 /// Impulses, motion and work of a body of a run, from tools.csv, and the grains at its end
 struct RigRun {
-    CsvTable tools;
+    io::CsvTable tools;
     /// Centres, y and speed of all grains at the end [m, m/s]
     std::vector<double> x = {}, y = {}, z = {}, speed = {};
     double work_on_grains = 0;  ///< of the boundaries, from the energy balance of the grains [J]

@@ -5,7 +5,7 @@
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "studies/experiments/chapter5/evolving_reference.hpp"
+#include "studies/problems/evolving_reference.hpp"
 #include "studies/running/contact_rows.hpp"
 #include "studies/running/invariants.hpp"
 #include "tests/studies/csv.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda study --shard I/N and hilda collect.
 #include "tests/studies/csv.hpp"
-#include "tests/studies/distribution/divided_studies.hpp"
+#include "tests/studies/program/divided_studies.hpp"
 #include "tests/studies/refused.hpp"
 #include "tests/studies/resumed_run.hpp"
 

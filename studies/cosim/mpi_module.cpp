@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Loads hilda-mpi.so (mpi.cpp) for hilda cosim --transport mpi. Otherwise the program does not load MPI.
 
-#include "studies/distribution/communicator.hpp"
+#include "studies/cosim/communicator.hpp"
 
 #include "io/error.hpp"
 #include "io/module.hpp"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/frames/view.hpp"
+#include "studies/program/view.hpp"
 
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/formats/csv.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/running/frames/drawn_patches.hpp"
 #include "studies/running/frames/model_frames.hpp"
-#include "studies/running/plot.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "studies/distribution/shard.hpp"
+#include "studies/running/jobs/shard.hpp"
 
 #include <functional>
 #include <string>

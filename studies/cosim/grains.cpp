@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loads hilda-grains.so.
-#include "studies/program/grains.hpp"
+#include "studies/cosim/grains.hpp"
 
 #include "io/error.hpp"
 #include "io/module.hpp"
-#include "studies/framework/study.hpp"
 
 /// Defined in programs that link grains (grains_module.cpp)
 extern "C" __attribute__((weak)) const hilda::studies::GrainFunctions* hilda_grain_functions();
@@ -33,18 +32,5 @@ const GrainFunctions& grains(const std::string& what)
             "and the Debian package hilda has it");
     return *found;
 }
-
-namespace {
-
-/// The studies of the module register themselves when it is loaded.
-std::vector<Study> load_studies()
-{
-    find_grains("studies of grains");
-    return {};
-}
-
-const bool registered_grains = register_studies(load_studies);
-
-}  // namespace
 
 }  // namespace hilda::studies

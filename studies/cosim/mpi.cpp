@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The module hilda-mpi.so: a Communicator by MPI.
 
-#include "studies/distribution/communicator.hpp"
+#include "studies/cosim/communicator.hpp"
 
 #include "io/error.hpp"
 

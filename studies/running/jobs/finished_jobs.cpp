@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/finished_jobs.hpp"
+#include "studies/running/jobs/finished_jobs.hpp"
 
 #include "io/error.hpp"
 

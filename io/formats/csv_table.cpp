@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/framework/csv_table.hpp"
+#include "io/formats/csv_table.hpp"
 
+#include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/formats/csv.hpp"
 #include "io/option_values.hpp"
-#include "lie/check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-namespace hilda::studies {
+namespace hilda::io {
 
 namespace {
 
@@ -19,9 +19,9 @@ constexpr size_t most = 256 << 20;  // bytes
 std::string contents(const std::string& file)
 {
     try {
-        return io::read_file(file, most);
-    } catch (const io::IoError& error) {
-        throw lie::InvalidInput(error.what());
+        return read_file(file, most);
+    } catch (const IoError& error) {
+        throw InvalidInput(error.what());
     }
 }
 
@@ -30,7 +30,7 @@ std::string contents(const std::string& file)
 size_t CsvTable::column(const std::string& name) const
 {
     const auto at = std::find(columns.begin(), columns.end(), name);
-    if (at == columns.end()) throw lie::InvalidInput(file + ": there is no column '" + name + "'");
+    if (at == columns.end()) throw InvalidInput(file + ": there is no column '" + name + "'");
     return static_cast<size_t>(at - columns.begin());
 }
 
@@ -45,20 +45,20 @@ std::vector<double> CsvTable::values(const std::string& name) const
 CsvTable read_csv_table(const std::string& file)
 {
     CsvTable table{.file = file, .columns = {}, .rows = {}};
-    io::read_csv(contents(file), file, [&](const io::CsvRow& row) {
+    read_csv(contents(file), file, [&](const CsvRow& row) {
         table.columns.assign(row.names.begin(), row.names.end());
         std::vector<double>& values = table.rows.emplace_back();
         for (size_t k = 0; k < row.cells.size(); ++k) {
             const std::string_view cell = row.cells[k];
-            const auto value = cell.empty() ? std::optional(std::nan("")) : io::number_in<double>(cell);
+            const auto value = cell.empty() ? std::optional(std::nan("")) : number_in<double>(cell);
             if (!value)
-                throw lie::InvalidInput(row.place + ": " + table.columns[k] + " must be a number, got '" +
-                                        std::string(cell) + "'");
+                throw InvalidInput(row.place + ": " + table.columns[k] + " must be a number, got '" +
+                                   std::string(cell) + "'");
             values.push_back(*value);
         }
     });
-    if (table.rows.empty()) throw lie::InvalidInput(file + ": has no rows of numbers");
+    if (table.rows.empty()) throw InvalidInput(file + ": has no rows of numbers");
     return table;
 }
 
-}  // namespace hilda::studies
+}  // namespace hilda::io

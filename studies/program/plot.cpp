@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/plot.hpp"
+#include "studies/program/plot.hpp"
 
 #include "io/error.hpp"
 #include "io/files.hpp"
@@ -161,12 +161,6 @@ ProcessResult run(std::vector<std::string> words)
     return result;
 }
 
-std::string last_line(std::string text)
-{
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    return text.substr(text.rfind('\n') + 1);
-}
-
 /// One line with the reason why a Python process failed; empty if it succeeded
 std::string failure_reason(const ProcessResult& result)
 {
@@ -189,14 +183,13 @@ std::string failure_reason(const ProcessResult& result)
 
 }  // namespace
 
-void add_script_directory(const std::string& directory) { more_places().emplace_back(directory); }
-
-const std::vector<std::string>& figure_formats()
+std::string last_line(std::string text)
 {
-    static const std::vector<std::string> all = {"png",  "pdf", "svg",  "eps", "ps",  "svgz",
-                                                 "jpeg", "jpg", "tiff", "tif", "webp"};
-    return all;
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    return text.substr(text.rfind('\n') + 1);
 }
+
+void add_script_directory(const std::string& directory) { more_places().emplace_back(directory); }
 
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options)
@@ -235,6 +228,12 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     return files;
 }
 
+std::vector<std::string> draw_figures(const std::string& script, const std::string& directory,
+                                      const std::vector<std::string>& formats)
+{
+    return plot(script, directory, {.formats = formats}).value_or(std::vector<std::string>{});
+}
+
 void start_script(const std::string& script, const std::vector<std::string>& arguments)
 {
     std::vector<std::string> words = {python(), no_bytecode, find_script(script)};
@@ -246,25 +245,6 @@ void start_script(const std::string& script, const std::vector<std::string>& arg
     std::cout.flush();
     execvp(argv[0], argv.data());
     throw io::NotAvailable(python() + " was not found (Debian: apt-get install python3-numpy)");
-}
-
-void remove_figure(const std::string& directory, const std::string& name)
-{
-    std::error_code error;
-    for (const std::string& format : figure_formats())
-        fs::remove((fs::path(directory) / name).replace_extension(format), error);
-}
-
-std::vector<std::string> existing_figures(const std::string& directory, const std::string& name,
-                                          const std::vector<std::string>& formats)
-{
-    std::vector<std::string> files;
-    std::error_code error;
-    for (const std::string& format : formats.empty() ? std::vector<std::string>{"png"} : formats) {
-        const std::string file = fs::path(name).replace_extension(format).string();
-        if (fs::is_regular_file(fs::path(directory) / file, error)) files.push_back(file);
-    }
-    return files;
 }
 
 std::string script_for(const std::string& directory)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/program/granular_program.hpp"
+#include "studies/cosim/granular_program.hpp"
 
 #include "io/error.hpp"
 

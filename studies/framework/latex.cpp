@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/latex.hpp"
+#include "studies/framework/latex.hpp"
 
 #include <algorithm>
 #include <map>
@@ -11,7 +11,7 @@ namespace hilda::studies {
 namespace {
 
 /// 1.5 and -03 as 1.5\times10^{-3}; without exponent the mantissa
-std::string number(const std::string& mantissa, const std::string& exponent)
+std::string power_of_ten(const std::string& mantissa, const std::string& exponent)
 {
     return exponent.empty() ? mantissa : mantissa + "\\times10^{" + std::to_string(std::stoi(exponent)) + '}';
 }
@@ -23,7 +23,7 @@ std::string number_cell(const std::string& cell)
     static const std::regex form(R"((<= )?([-+]?)(\d+(?:\.\d+)?)(?:e([-+]?\d{1,3}))?([* ]?))");
     std::smatch m;
     if (!std::regex_match(cell, m, form)) return {};
-    return '$' + std::string(m[1].matched ? "\\le " : "") + m[2].str() + number(m[3], m[4]) + '$' +
+    return '$' + std::string(m[1].matched ? "\\le " : "") + m[2].str() + power_of_ten(m[3], m[4]) + '$' +
            (m[5] == "*" ? "*" : "");
 }
 
@@ -77,7 +77,7 @@ std::string latex(const std::string& text)
     static const std::regex form(R"((^|[^\w.])(\d+(?:\.\d+)?)e([-+]?\d{1,3})(?![\w.]))");
     std::string out, rest = text;
     for (std::smatch m; std::regex_search(rest, m, form); rest = m.suffix())
-        out += escaped(m.prefix().str() + m[1].str()) + '$' + number(m[2], m[3]) + '$';
+        out += escaped(m.prefix().str() + m[1].str()) + '$' + power_of_ten(m[2], m[3]) + '$';
     return out + escaped(rest);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/experiments/chapter5/evolving_reference.hpp"
+#include "studies/problems/evolving_reference.hpp"
 
 #include "contact/evolving/unilateral.hpp"
 #include "contact/surfaces/ellipsoid.hpp"

@@ -10,12 +10,9 @@
 
 namespace hilda::studies {
 
-/// Formats of figures: those that matplotlib writes without further programs
-const std::vector<std::string>& figure_formats();
-
 /// Formats and contents of figures
 struct FigureOptions {
-    std::vector<std::string> formats = {};  ///< of figure_formats(); empty: png
+    std::vector<std::string> formats = {};  ///< of figure_formats() in running/figures.hpp; empty: png
     std::vector<std::string> integrators =
         {};  ///< the curves to show; empty: the choice of the script, at most eight
     std::vector<std::string> quantities = {};  ///< the panels to show; empty: all that have values
@@ -30,16 +27,16 @@ struct FigureOptions {
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options = {});
 
+/// The same as a DrawFigures, see running/figures.hpp
+std::vector<std::string> draw_figures(const std::string& script, const std::string& directory,
+                                      const std::vector<std::string>& formats);
+
 /// Replaces this program by a script, for example "view.py", which then has the terminal, and whose messages
 /// and exit codes are those of the program. Throws io::NotAvailable if Python or the script is missing.
 [[noreturn]] void start_script(const std::string& script, const std::vector<std::string>& arguments);
 
-/// Removes the figure with this name, NAME.png, in all formats.
-void remove_figure(const std::string& directory, const std::string& name);
-/// The names of the figure NAME.png in these formats, of those that exist in the directory. Without formats:
-/// png
-std::vector<std::string> existing_figures(const std::string& directory, const std::string& name,
-                                          const std::vector<std::string>& formats);
+/// The last line of the output of a process
+std::string last_line(std::string text);
 
 /// Adds a directory in which plot() looks for scripts, after those of the program.
 void add_script_directory(const std::string& directory);

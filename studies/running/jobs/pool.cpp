@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/framework/pool.hpp"
+#include "studies/running/jobs/pool.hpp"
 
 #include "io/progress.hpp"
-#include "studies/running/finished_jobs.hpp"
+#include "studies/running/jobs/finished_jobs.hpp"
 
 #include <fmt/format.h>
 

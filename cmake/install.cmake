@@ -67,7 +67,8 @@ if(TARGET granular_objects)
         OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
         PRIVATE OpenMP::OpenMP_CXX hilda_granular_loops)
     hilda_component(studies
-        OBJECTS $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
+        OBJECTS $<TARGET_OBJECTS:run_objects> $<TARGET_OBJECTS:granular_run_objects>
+            $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
         PUBLIC hilda_reference_library hilda_granular_library
         PRIVATE Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
 endif()
@@ -112,7 +113,7 @@ function(hilda_install_headers)
     endforeach()
 endfunction()
 hilda_install_headers(
-    FOLDERS io lie dae contact reference studies/framework studies/running studies/problems granular/force_models
+    FOLDERS io lie dae contact reference run studies/framework studies/problems granular/force_models
     FILES granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/finite_state.hpp
         granular/backend/fixed_sum.hpp
         granular/backend/par.hpp granular/backend/real.hpp

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How a room becomes targets.
 
-# Five precompiled headers: one owned by the lowest room with Eigen and used by all rooms below studies, one by studies, one by
-# the tests of the lowest room and used by all tests, and those of granular and of its tests, without Eigen and with the flags of
+# Five precompiled headers: one owned by the lowest room with Eigen and used by the rooms below run, one by run and used by studies, one
+# by the tests of the lowest room and used by all tests, and those of granular and of its tests, without Eigen and with the flags of
 # granular. A source file must include what it uses: the preset `tidy` builds without precompiled headers.
 #
-# The optimisation is part of a precompiled header, so it is set here as well. Studies and tests are compiled with -O1 in a Release
+# The optimisation is part of a precompiled header, so it is set here as well. Run, studies and tests are compiled with -O1 in a Release
 # build, a quarter less time.
 #
 # nlohmann/json.hpp, which tests use, is not part of them. Its literal operators instantiate the parser, which costs 0.6 s in
 # each file that sees the header, and most files do not use it. Headers with compile definitions (fmt) cannot be part of them,
 # because the definitions differ between the rooms.
 function(hilda_precompile target)
-    if(target MATCHES "^(test_|studies_|program_)")
+    if(target MATCHES "^(test_|run_|studies_|program_)")
         # Without the warnings that -O1 of GCC 12 falsely gives for matrices of Eigen, and with -O2 and -O3 not.
         target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1$<SEMICOLON>-Wno-maybe-uninitialized>)
     endif()
@@ -34,7 +34,7 @@ function(hilda_precompile target)
         endif()
         target_precompile_headers(${target} PRIVATE ${headers})
         hilda_name_precompiled_header(${target})
-    elseif(target MATCHES "^(lie|studies)_objects$")
+    elseif(target MATCHES "^(lie|run)_objects$")
         target_precompile_headers(${target} PRIVATE ${headers})
         hilda_name_precompiled_header(${target})
     elseif(target STREQUAL "test_lie_objects")
@@ -42,8 +42,8 @@ function(hilda_precompile target)
         hilda_name_precompiled_header(${target})
     elseif(target MATCHES "^test_")
         target_precompile_headers(${target} REUSE_FROM test_lie_objects)
-    elseif(target MATCHES "^program_")
-        target_precompile_headers(${target} REUSE_FROM studies_objects)
+    elseif(target MATCHES "^(studies|program)_")
+        target_precompile_headers(${target} REUSE_FROM run_objects)
     else()
         target_precompile_headers(${target} REUSE_FROM lie_objects)
     endif()

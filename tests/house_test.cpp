@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 const fs::path root = hilda::tests::source_dir;
-const std::set<std::string> rooms = {"io",        "lie",   "dae",     "contact", "granular",
-                                     "reference", "tests", "studies", "python"};
+const std::set<std::string> rooms = {"io",        "lie", "dae",     "contact", "granular",
+                                     "reference", "run", "studies", "python",  "tests"};
 
 /// The rooms that each room may include, besides itself.
 const std::map<std::string, std::set<std::string>> allowed_rooms = {
@@ -32,9 +32,10 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
     {"contact", {"io", "dae", "lie"}},
     {"granular", {"io"}},
     {"reference", {"io", "dae", "lie"}},
-    {"studies", {"io", "lie", "dae", "contact", "granular", "reference"}},
-    {"python", {"io", "lie", "dae", "contact", "granular", "reference", "studies"}},
-    {"tests", {"io", "lie", "dae", "contact", "granular", "reference", "studies"}},
+    {"run", {"io", "lie", "dae", "contact", "granular", "reference"}},
+    {"studies", {"io", "lie", "dae", "contact", "granular", "reference", "run"}},
+    {"python", {"io", "lie", "dae", "contact", "granular", "reference", "run", "studies"}},
+    {"tests", {"io", "lie", "dae", "contact", "granular", "reference", "run", "studies"}},
 };
 
 /// The folders of granular that each of them may include, besides itself. A folder stands for its subfolders
@@ -105,35 +106,14 @@ const std::map<std::string, std::set<std::string>> folders = {
       "validations/comparison",
       "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},
+    {"run",
+     {"", "cosim", "events", "fitting", "frames", "importing", "jobs", "kinematics", "sinks", "tables",
+      "watch"}},
     {"studies",
-     {"",
-      "benchmarks",
-      "cosim",
-      "experiments",
-      "experiments/chapter3",
-      "experiments/chapter4",
-      "experiments/chapter4/friction",
-      "experiments/chapter5",
-      "experiments/chapter7",
-      "experiments/chapter7/rigs",
-      "experiments/chapter8",
-      "experiments/sweep",
-      "framework",
-      "importing",
-      "kinematics",
-      "plots",
-      "plots/viewer",
-      "problems",
-      "program",
-      "fitting",
-      "repeating",
-      "running",
-      "running/events",
-      "running/frames",
-      "running/jobs",
-      "running/sinks",
-      "running/tables",
-      "running/watch"}},
+     {"", "benchmarks", "experiments", "experiments/chapter3", "experiments/chapter4",
+      "experiments/chapter4/friction", "experiments/chapter5", "experiments/chapter7",
+      "experiments/chapter7/rigs", "experiments/chapter8", "experiments/sweep", "framework", "plots",
+      "plots/viewer", "problems", "program", "program/repeating"}},
     {"python", {"", "bindings", "granular_bindings", "hilda", "hilda_granular"}},
 };
 
@@ -366,12 +346,13 @@ TEST_CASE("comments are wrapped at 110 columns", "[house]")
 TEST_CASE("a folder of tests has the name of the folder that it tests", "[house]")
 {
     for (const auto& [room, known] : folders) {
-        if (!fs::exists(root / "tests" / room)) continue;
-        for (const auto& entry : fs::recursive_directory_iterator(root / "tests" / room)) {
+        const fs::path tests = root / "tests" / (room == "run" ? "running" : room);  // tests/run is a script
+        if (!fs::exists(tests)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(tests)) {
             if (!entry.is_directory()) continue;
-            const std::string folder = fs::relative(entry.path(), root / "tests" / room).generic_string();
+            const std::string folder = fs::relative(entry.path(), tests).generic_string();
             if (folder.ends_with("__pycache__")) continue;
-            INFO("tests/" << room << "/" << folder);
+            INFO(tests.generic_string() << "/" << folder);
             CHECK((known.count(folder) == 1 || folder == "scenes/siconos"));
         }
     }
@@ -395,7 +376,8 @@ TEST_CASE("the top level of the tree has the documented entries", "[house]")
         ".gitignore",     ".clang-format",     ".clang-tidy", "lie",     "dae", "tests",
     };
     std::set<std::string> allowed = always;
-    allowed.insert({"io", "contact", "granular", "reference", "studies", "python", "docs", "examples"});
+    allowed.insert(
+        {"io", "contact", "granular", "reference", "run", "studies", "python", "docs", "examples"});
     allowed.insert({"CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "pyproject.toml"});
 
     const std::set<std::string> top = tracked_top_level();

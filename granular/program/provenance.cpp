@@ -17,7 +17,7 @@ namespace {
 
 // A build of the folder granular alone has no generated version header.
 #if __has_include(<hilda/version.hpp>)
-constexpr const char* git = studies::version::git;
+constexpr const char* git = version::git;
 #else
 constexpr const char* git = "unknown";
 #endif

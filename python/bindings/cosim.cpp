@@ -2,7 +2,7 @@
 #include "python/bindings/cosim.hpp"
 
 #include "io/program.hpp"
-#include "studies/cosim/run_cosim.hpp"
+#include "run/cosim/run_cosim.hpp"
 
 #include <pybind11/stl.h>
 
@@ -17,8 +17,8 @@ void define_cosim(py::module_& m)
         [](const std::string& file, const std::string& output, const std::vector<std::string>& set,
            std::optional<double> end, std::optional<double> interval, bool contacts, bool reactions,
            double checkpoint, int threads, bool fix_initial, bool force, bool resume) {
-            studies::CosimOptions options{.file = file};
-            studies::RunOptions& o = options.run;
+            run::CosimOptions options{.file = file};
+            run::RunOptions& o = options.run;
             o.output = output;
             o.set = set;
             o.end = end;
@@ -34,7 +34,7 @@ void define_cosim(py::module_& m)
             if (reactions) o.outputs["--reactions"] = "";
             const py::gil_scoped_release release;
             io::Interrupt::forget();
-            return studies::run_cosim(options);
+            return run::run_cosim(options);
         },
         py::arg("file"), py::arg("output"), py::arg("set"), py::arg("end"), py::arg("interval"),
         py::arg("contacts"), py::arg("reactions"), py::arg("checkpoint"), py::arg("threads"),

@@ -13,7 +13,7 @@ namespace py = pybind11;
 
 namespace {
 
-class Table final : public studies::RunTable {
+class Table final : public run::RunTable {
 public:
     explicit Table(std::vector<double>& to) : to(to) {}
 
@@ -37,8 +37,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<studies::RunTable> EventTables::table(const std::string& /*name*/,
-                                                      std::vector<studies::TableColumn> all)
+std::unique_ptr<run::RunTable> EventTables::table(const std::string& /*name*/,
+                                                  std::vector<run::TableColumn> all)
 {
     columns = all.size();
     return std::make_unique<Table>(values);

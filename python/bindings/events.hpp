@@ -3,17 +3,17 @@
 
 #pragma once
 
-#include "studies/running/events/run_events.hpp"
+#include "run/events/run_events.hpp"
 
 #include <pybind11/pybind11.h>
 
 namespace hilda::python {
 
 /// The rows of the table of events, which RunEvents writes
-class EventTables final : public studies::RunTables {
+class EventTables final : public run::RunTables {
 public:
-    std::unique_ptr<studies::RunTable> table(const std::string& name,
-                                             std::vector<studies::TableColumn> columns) override;
+    std::unique_ptr<run::RunTable> table(const std::string& name,
+                                         std::vector<run::TableColumn> columns) override;
 
     /// Arrays event, direction, t, r, A, rdot, omega_bar, rddot, omegadot_bar; the event is the first index
     pybind11::dict arrays(size_t bodies) const;

@@ -4,9 +4,9 @@
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "python/bindings/settings.hpp"
-#include "studies/fitting/fit.hpp"
-#include "studies/running/named_model.hpp"
-#include "studies/running/run_settings.hpp"
+#include "run/fitting/fit.hpp"
+#include "run/named_model.hpp"
+#include "run/run_settings.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
@@ -39,20 +39,20 @@ dae::Description read(const Source& from, std::span<const std::string> changes)
 {
     Names all = from.set;
     all.insert(all.end(), changes.begin(), changes.end());
-    return from.text.empty() ? studies::named_model(from.name, all, "")
+    return from.text.empty() ? run::named_model(from.name, all, "")
                              : dae::read_model(from.text, "model", all, "", from.folder);
 }
 
 /// Runs the fit on another thread, and handles the signals of Python meanwhile.
-studies::FitResult run_fit(studies::FitProblem& problem)
+run::FitResult run_fit(run::FitProblem& problem)
 {
     std::atomic<bool> is_stopped = false;
     problem.stop = &is_stopped;
     std::optional<py::error_already_set> signal;
-    std::future<studies::FitResult> result;
+    std::future<run::FitResult> result;
     {
         const py::gil_scoped_release release;
-        result = std::async(std::launch::async, [&problem] { return studies::fit(problem); });
+        result = std::async(std::launch::async, [&problem] { return run::fit(problem); });
         while (result.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
             if (is_stopped) continue;
             const py::gil_scoped_acquire gil;
@@ -62,7 +62,7 @@ studies::FitResult run_fit(studies::FitProblem& problem)
         }
     }
     try {
-        studies::FitResult all = result.get();
+        run::FitResult all = result.get();
         if (!signal) return all;
     } catch (...) {
         if (!signal) throw;
@@ -70,7 +70,7 @@ studies::FitResult run_fit(studies::FitProblem& problem)
     throw std::move(*signal);
 }
 
-py::dict as_dict(const studies::FitResult& result)
+py::dict as_dict(const run::FitResult& result)
 {
     py::dict all;
     const auto n = static_cast<Eigen::Index>(result.parameters.size());
@@ -78,7 +78,7 @@ py::dict as_dict(const studies::FitResult& result)
     Eigen::MatrixXd interval(n, 2);
     std::vector<bool> at_bound;
     for (Eigen::Index k = 0; k < n; ++k) {
-        const studies::FittedParameter& of = result.parameters[static_cast<size_t>(k)];
+        const run::FittedParameter& of = result.parameters[static_cast<size_t>(k)];
         value[k] = of.value, error[k] = of.error, bias[k] = of.bias;
         interval.row(k) << of.low_95, of.high_95;
         at_bound.push_back(of.at_bound);
@@ -106,28 +106,28 @@ py::dict as_dict(const studies::FitResult& result)
     return all;
 }
 
-py::dict fit(const Source& source, const std::vector<Parameter>& parameters, studies::FitData data,
+py::dict fit(const Source& source, const std::vector<Parameter>& parameters, run::FitData data,
              std::vector<double> sigma, const std::string& integrator, std::optional<double> step,
              const std::map<std::string, std::string>& settings, bool fix_initial, int max_iterations,
              int jobs)
 {
-    studies::FitProblem problem;
+    run::FitProblem problem;
     problem.read = [&source](std::span<const std::string> changes) { return read(source, changes); };
     problem.data = std::move(data);
     problem.sigma = std::move(sigma);
     problem.max_iterations = max_iterations;
     problem.jobs = jobs;
-    studies::SampledRunOptions& options = problem.run;
+    run::SampledRunOptions& options = problem.run;
     options.scheme = &lie::scheme(integrator);
     if (!step) options.scheme = &options.scheme->with_adaptive_steps();
-    options.step = step.value_or(studies::default_step);
+    options.step = step.value_or(run::default_step);
     options.fix_initial = fix_initial;
     options.settings = settings_of("fit", *options.scheme, settings, step.has_value(), {});
     std::optional<dae::Description> model;  // read if a start is not stated
     for (const auto& [pointer, start, low, high, scale] : parameters) {
         if (!start && !model) model = problem.read({});
         problem.parameters.push_back({.pointer = pointer,
-                                      .start = start ? *start : studies::number_at(*model, pointer),
+                                      .start = start ? *start : run::number_at(*model, pointer),
                                       .low = low,
                                       .high = high,
                                       .scale = scale});
@@ -142,7 +142,7 @@ void define_fit(py::module_& m)
     m.def(
         "_fit_data",
         [](const std::string& path, const Names& columns) {
-            const studies::FitData data = studies::read_fit_data(path, columns);
+            const run::FitData data = run::read_fit_data(path, columns);
             return py::make_tuple(py::cast(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
                                       data.t.data(), static_cast<Eigen::Index>(data.t.size())))),
                                   data.columns, data.values);

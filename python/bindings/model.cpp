@@ -8,8 +8,8 @@
 #include "python/bindings/force.hpp"
 #include "python/bindings/state.hpp"
 #include "python/bindings/surface.hpp"
+#include "run/named_model.hpp"
 #include "studies/framework/problem.hpp"
-#include "studies/running/named_model.hpp"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -154,7 +154,7 @@ void define_model(py::module_& m)
         "_read_named",
         [](const std::string& name, const Names& set, const Forces& forces, const Constraints& constraints,
            bool fix_initial) {
-            return started([&] { return studies::named_model(name, set, ""); }, {forces, constraints, {}},
+            return started([&] { return run::named_model(name, set, ""); }, {forces, constraints, {}},
                            fix_initial);
         },
         py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("constraints"), py::arg("fix_initial"));
@@ -179,10 +179,10 @@ void define_model(py::module_& m)
             all.emplace_back(problem.name, problem.what);
         return all;
     });
-    m.def("_is_path", &studies::is_model_path);
+    m.def("_is_path", &run::is_model_path);
     m.def("_text_of", [](const std::string& name) {
-        return studies::is_model_path(name) ? io::read_file(name, io::JsonSource::max_bytes)
-                                            : studies::problem(name).model;
+        return run::is_model_path(name) ? io::read_file(name, io::JsonSource::max_bytes)
+                                        : studies::problem(name).model;
     });
 }
 

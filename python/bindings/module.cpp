@@ -13,7 +13,7 @@
 PYBIND11_MODULE(_hilda, m)
 {
     using namespace hilda::python;
-    m.attr("__version__") = hilda::studies::version::number;
+    m.attr("__version__") = hilda::version::number;
     translate_exceptions("hilda.errors");
     define_state(m);
     define_model(m);

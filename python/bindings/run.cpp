@@ -14,13 +14,13 @@
 #include "python/bindings/settings.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
+#include "run/diagnosis.hpp"
+#include "run/output_columns.hpp"
+#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
+#include "run/watch/watch.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/diagnosis.hpp"
-#include "studies/running/output_columns.hpp"
-#include "studies/running/run_settings.hpp"
-#include "studies/running/watch/run_check.hpp"
-#include "studies/running/watch/watch.hpp"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -130,7 +130,7 @@ private:
     std::vector<dae::Reaction> reactions;
     py::dict all;
     const size_t columns;  ///< number of them
-    std::optional<studies::ObservedColumns> observed;
+    std::optional<run::ObservedColumns> observed;
     double *t, *energy, *A, *lambda, *F = nullptr, *T = nullptr, *values = nullptr;
     size_t rows = 0;
     long last = -1, last_node = -1;
@@ -200,7 +200,7 @@ Outcome advance(lie::March& run, const lie::Integrator& integrator, lie::TimeGri
         out.statistics = march(run, integrator, grid, observers, observer, signals);
         if (observer != nullptr && observer->stopped) out.status = "stopped";
     } catch (const lie::Interrupted&) {
-    } catch (const studies::StoppedByEvent& stop) {  // the state at the event is the last row
+    } catch (const run::StoppedByEvent& stop) {  // the state at the event is the last row
         out.status = "stopped";
         out.stopped_by = stop.event;
         out.t = stop.x.t;
@@ -219,8 +219,7 @@ Outcome advance(lie::March& run, const lie::Integrator& integrator, lie::TimeGri
         out.status = failure.status;
         std::string text = failure.what();
         try {
-            const studies::Diagnosis d =
-                studies::diagnose(failure, model, run.node(), run.number(), grid.h, scheme);
+            const run::Diagnosis d = run::diagnose(failure, model, run.node(), run.number(), grid.h, scheme);
             text = d.what + (d.detail.empty() ? "" : "; " + d.detail);
             run.finish(observers);
         } catch (const io::NumericalFailure&) {
@@ -257,16 +256,16 @@ py::dict counters(const lie::Statistics& of)
 std::vector<std::string> column_names(const dae::Description& of, const std::vector<std::string>& given)
 {
     std::vector<std::string> all;
-    const auto add = [&](const studies::ColumnGroup& group) {
+    const auto add = [&](const run::ColumnGroup& group) {
         for (const dae::Quantity& column : group.columns) all.push_back(column.name);
     };
     for (const std::string& name : given)
         if (name == "forces")
-            add(*studies::force_columns(*of.model));
+            add(*run::force_columns(*of.model));
         else if (name == "contacts")
-            add(*studies::contact_columns(*of.model));
+            add(*run::contact_columns(*of.model));
         else if (name == "outputs")
-            add(studies::OutputColumns(*of.model, of.outputs));
+            add(run::OutputColumns(*of.model, of.outputs));
         else
             all.push_back(name);
     return all;
@@ -291,33 +290,31 @@ py::dict run(const ModelPointer& model, const Options& options)
     lie::Settings settings =
         settings_of("run", *scheme, options.settings, options.step.has_value(), options.interval);
     settings.stop = &Signals::raised_in_run;
-    lie::TimeGrid grid = studies::time_grid(*scheme, end, options.step, options.interval);
+    lie::TimeGrid grid = run::time_grid(*scheme, end, options.step, options.interval);
     std::vector<std::string> warnings = of.warnings;
     for (const std::string& row : model->start.dropped)
         warnings.push_back(row + ": redundant with the constraints before it, dropped from the equations");
     for (std::string& warning : contact::soft_friction_warnings(system, of.x))
         warnings.push_back(std::move(warning));
-    for (std::string& warning : studies::grid_warnings(grid, end, options.interval.value_or(0), *scheme))
+    for (std::string& warning : run::grid_warnings(grid, end, options.interval.value_or(0), *scheme))
         warnings.push_back(std::move(warning));
-    if (std::string warning = studies::check_run(system, of.x, *scheme, grid, options.force);
-        !warning.empty())
+    if (std::string warning = run::check_run(system, of.x, *scheme, grid, options.force); !warning.empty())
         warnings.push_back(std::move(warning));
 
     const std::unique_ptr<lie::Integrator> integrator =
         in_python ? std::make_unique<PythonIntegrator>(options.integrator, system)
                   : contact::make_integrator(system, *scheme, settings);
-    studies::Watch watch(system, of.x, *integrator, *scheme, grid, studies::Watch::Action::stop,
-                         options.force);
+    run::Watch watch(system, of.x, *integrator, *scheme, grid, run::Watch::Action::stop, options.force);
     Rows rows(of, grid, options.reactions, column_names(of, options.columns));
     std::vector<lie::Observer*> observers{&rows, &watch};
     EventTables event_tables;
-    std::unique_ptr<studies::RunEvents> events;
+    std::unique_ptr<run::RunEvents> events;
     if (!of.events.empty()) {
         if (const std::string why = in_python ? "events need an integrator of the library"
-                                              : studies::why_no_events(*scheme, *integrator);
+                                              : run::why_no_events(*scheme, *integrator);
             !why.empty())
             throw io::UsageError("run: " + of.events.front().value->name_place + ": " + why);
-        events = std::make_unique<studies::RunEvents>(
+        events = std::make_unique<run::RunEvents>(
             of, [&] { return contact::make_integrator(system, *scheme, settings); }, event_tables);
         observers.insert(observers.begin(), events.get());
     }
@@ -330,8 +327,8 @@ py::dict run(const ModelPointer& model, const Options& options)
     const Outcome out = advance(march, *integrator, grid, observers, observer.get(), rows, system, *scheme);
     if (events && !events->fault().empty()) warnings.push_back(events->fault());
 
-    for (const studies::Finding& found : watch.findings()) warnings.push_back(found.text);
-    if (std::string warning = studies::rank_warning(*integrator); !warning.empty())
+    for (const run::Finding& found : watch.findings()) warnings.push_back(found.text);
+    if (std::string warning = run::rank_warning(*integrator); !warning.empty())
         warnings.push_back(std::move(warning));
     py::dict result;
     result["arrays"] = rows.arrays();
@@ -356,7 +353,7 @@ py::dict run(const ModelPointer& model, const Options& options)
 
 void define_run(py::module_& m)
 {
-    m.attr("default_integrator") = studies::default_integrator;
+    m.attr("default_integrator") = run::default_integrator;
     m.def(
         "_run",
         [](const ModelPointer& model, py::object integrator, std::optional<double> end,

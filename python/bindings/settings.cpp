@@ -2,9 +2,9 @@
 #include "python/bindings/settings.hpp"
 
 #include "lie/schemes.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/command_options.hpp"
-#include "studies/running/watch/run_check.hpp"
 
 namespace hilda::python {
 
@@ -19,7 +19,7 @@ lie::Settings settings_of(const std::string& command, const lie::Scheme& scheme,
             option.set(settings, option.name, value->second);
             given.push_back(option.name);
         }
-    studies::check_step_options(scheme, given, has_step, interval);
+    run::check_step_options(scheme, given, has_step, interval);
     studies::refuse_unused_settings(command, given, {&scheme});
     return settings;
 }

@@ -114,7 +114,7 @@ void define_world(py::module_& m)
 PYBIND11_MODULE(_granular, m)
 {
     using namespace hilda;
-    m.attr("__version__") = studies::version::number;
+    m.attr("__version__") = version::number;
     python::translate_exceptions("hilda_granular.errors");
     pybind11::register_local_exception_translator([](std::exception_ptr thrown) {
         try {

@@ -5,7 +5,7 @@
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter='^march/'
 
-#include "studies/running/watch/watch.hpp"
+#include "run/watch/watch.hpp"
 #include "dae/model_file.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
@@ -39,7 +39,7 @@ void march(benchmark::State& timer, const char* name, bool ball, bool watched)
     grid.interval = grid.steps;
     for (auto _ : timer) {
         const auto integrator = scheme.make(*d.model, {});
-        studies::Watch watch(*d.model, d.x, *integrator, scheme, grid, studies::Watch::Action::stop);
+        run::Watch watch(*d.model, d.x, *integrator, scheme, grid, run::Watch::Action::stop);
         lie::Observer* observers[] = {&watch};
         lie::March run(d.x, *integrator, h);
         const std::span<lie::Observer* const> all(observers, watched ? 1 : 0);

@@ -3,7 +3,7 @@
 
 #include "io/nearest.hpp"
 #include "lie/check.hpp"
-#include "studies/running/named_model.hpp"
+#include "run/named_model.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -27,10 +27,10 @@ std::optional<int> member_number(const std::string& name, const ProblemFamily& f
 
 /// The problems as models that have names
 const bool registered_problems =
-    io::Registry<ModelSource>::add({.name = "problems", .find = [](const std::string& name) {
-                                        const Problem found = problem(name);
-                                        return NamedText{found.name, found.model};
-                                    }});
+    io::Registry<run::ModelSource>::add({.name = "problems", .find = [](const std::string& name) {
+                                             const Problem found = problem(name);
+                                             return run::NamedText{found.name, found.model};
+                                         }});
 
 }  // namespace
 

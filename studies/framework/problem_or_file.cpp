@@ -2,8 +2,8 @@
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
 #include "reference/solvers/reference_solution.hpp"
+#include "run/named_model.hpp"
 #include "studies/framework/problem.hpp"
-#include "studies/running/named_model.hpp"
 
 #include <filesystem>
 
@@ -13,7 +13,7 @@ Problem problem_or_file(const std::string& name_or_path)
 {
     constexpr size_t most = 64 << 20;
     Problem p;
-    if (!is_model_path(name_or_path)) {
+    if (!run::is_model_path(name_or_path)) {
         p = problem(name_or_path);
     } else {
         std::error_code error;  // of names that the file system does not accept

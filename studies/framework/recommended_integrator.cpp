@@ -3,7 +3,7 @@
 
 #include "dae/model.hpp"
 #include "lie/schemes.hpp"
-#include "studies/running/run_settings.hpp"
+#include "run/run_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
     const auto& constraints = model.general_constraints();
     if (std::any_of(constraints.begin(), constraints.end(),
                     [](const auto& c) { return c->algebraic_variables() > 0; }))
-        return {default_integrator,
+        return {run::default_integrator,
                 "contact constraints: second order in the motion and in the normal force"};
     if (degrees_of_freedom == 0)
         return {"rA-rkmk-4",
@@ -27,11 +27,11 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
     const auto force_of = [&](const dae::Model::StableStep& limit) -> const dae::Force& {
         return *model.forces()[static_cast<size_t>(limit.force)];
     };
-    const dae::Model::StableStep limit = model.stable_step(x, lie::scheme(default_integrator)),
+    const dae::Model::StableStep limit = model.stable_step(x, lie::scheme(run::default_integrator)),
                                  contacts = model.stable_step(x, LoadEvaluation::implicit);
     // Implicit integrators remove the limits of springs, and not those of contacts.
     const bool stiff =
-        limit.h < default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit));
+        limit.h < run::default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit));
     if (stiff && model.keep_redundant)
         return {
             "rA-full-1-exact",
@@ -45,16 +45,16 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
                             force_of(limit).label(), limit.h,
                             force_of(limit).may_be_implicit()
                                 ? fmt::format(", and {} has no limit for a force with \"implicit\": true",
-                                              default_integrator)
+                                              run::default_integrator)
                                 : "")};
     if (contacts.force >= 0)
         return {
-            default_integrator,
+            run::default_integrator,
             fmt::format("compliant contacts: second order between their events; steps up to {:.2g} s, the "
                         "limit of {}",
                         limit.h, force_of(limit).label())};
     return {
-        default_integrator,
+        run::default_integrator,
         "smooth motion: second order in positions, velocities and constraint forces, no drift of the energy"};
 }
 

@@ -8,8 +8,8 @@
 #include "io/message.hpp"
 #include "lie/settings.hpp"
 #include "reference/solvers/index1.hpp"
-#include "studies/running/diagnosis.hpp"
-#include "studies/running/jobs/pool.hpp"
+#include "run/diagnosis.hpp"
+#include "run/jobs/pool.hpp"
 
 #include <fmt/format.h>
 
@@ -59,12 +59,12 @@ Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
             context.refuse(fmt::format(
                 "the reference {} at rtol {} is too coarse for runs with rtol {}: its rtol must be {} "
                 "times smaller; --force accepts it",
-                scheme->name, step_text(rtol), step_text(evaluated.smallest_rtol), finer));
+                scheme->name, run::step_text(rtol), run::step_text(evaluated.smallest_rtol), finer));
         if (!options.force && evaluated.smallest_step > 0 && rtol > coarsest_rtol * slack)
             context.refuse(
                 fmt::format("the reference {} at rtol {} is coarser than {}, the limit for runs with a fixed "
                             "step: reduce --reference-rtol; --force accepts it",
-                            scheme->name, step_text(rtol), step_text(coarsest_rtol)));
+                            scheme->name, run::step_text(rtol), run::step_text(coarsest_rtol)));
         return;
     }
     if (options.reference_rtol)
@@ -83,7 +83,7 @@ Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
         context.refuse(
             fmt::format("the reference {} at h = {} s is coarser than a run at h = {} s: its step must be "
                         "smaller; --force accepts it",
-                        scheme->name, step_text(h), step_text(evaluated.smallest_step)));
+                        scheme->name, run::step_text(h), run::step_text(evaluated.smallest_step)));
 }
 
 void Reference::evaluate(std::vector<Benchmark>& benchmarks, const std::vector<double>& steps) const
@@ -104,7 +104,7 @@ void Reference::evaluate(Benchmark& c) const
     } else {
         c.reference_solution = by_integrator(c, *reference);
         c.reference_name = reference->adaptive
-                               ? fmt::format("{} at rtol {}", reference->name, step_text(rtol))
+                               ? fmt::format("{} at rtol {}", reference->name, run::step_text(rtol))
                                : fmt::format("{} at h = {:.6g} s", reference->name, step(c));
         if (scheme == nullptr && !options.quiet)
             io::warning(

@@ -6,8 +6,8 @@
 #include "io/message.hpp"
 #include "lie/integrator.hpp"
 #include "lie/trajectory.hpp"
-#include "studies/running/diagnosis.hpp"
-#include "studies/running/watch/watch.hpp"
+#include "run/diagnosis.hpp"
+#include "run/watch/watch.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ namespace hilda::studies {
 
 std::string Run::resolution() const
 {
-    return rtol > 0 ? "rtol = " + step_text(rtol) : "h = " + step_text(h) + " s";
+    return rtol > 0 ? "rtol = " + run::step_text(rtol) : "h = " + run::step_text(h) + " s";
 }
 
 std::string Run::name() const { return scheme->name + " on " + c->problem.name + " at " + resolution(); }
@@ -45,7 +45,7 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
     const dae::Description& d = *run.c->started;
     const double begin = thread_seconds();
     std::unique_ptr<lie::Integrator> integrator;
-    std::optional<Watch> watch;
+    std::optional<run::Watch> watch;
     const auto ended = [&](const std::string& status, const std::string& message) {
         run.status = status;
         run.message = message;
@@ -55,7 +55,7 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
         lie::March march(d.x, *integrator, run.h);
         lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
         grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
-        watch.emplace(*d.model, d.x, *integrator, *run.scheme, grid, Watch::Action::record);
+        watch.emplace(*d.model, d.x, *integrator, *run.scheme, grid, run::Watch::Action::record);
         std::vector<lie::Observer*> all(observers.begin(), observers.end());
         all.push_back(&*watch);
         while (march.number() < grid.steps) march.advance(all);

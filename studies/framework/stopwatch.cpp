@@ -5,8 +5,8 @@
 
 #include "dae/model_file.hpp"
 #include "lie/settings.hpp"
+#include "run/jobs/pool.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/running/jobs/pool.hpp"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 
 #include "io/registry.hpp"
 #include "lie/settings.hpp"
-#include "studies/running/figures.hpp"
-#include "studies/running/jobs/shard.hpp"
+#include "run/figures.hpp"
+#include "run/jobs/shard.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -57,16 +57,16 @@ struct StudyOptions {
 
     std::string output;  ///< existing output directory; "": no files (--json without --output)
     int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
-    bool strict = false;  ///< exit code 4 if the watch over a run has a warning
-    bool check = false;   ///< evaluate all acceptance criteria; exit code 6 if one fails
-    bool all = false;     ///< the complete default selection of a study that has a short one
-    bool force = false;   ///< accept a non-empty directory and a reference solution that is too coarse
-    bool resume = false;  ///< continue the interrupted study of the output directory
-    Shard shard = {};     ///< the runs that are computed
+    bool strict = false;    ///< exit code 4 if the watch over a run has a warning
+    bool check = false;     ///< evaluate all acceptance criteria; exit code 6 if one fails
+    bool all = false;       ///< the complete default selection of a study that has a short one
+    bool force = false;     ///< accept a non-empty directory and a reference solution that is too coarse
+    bool resume = false;    ///< continue the interrupted study of the output directory
+    run::Shard shard = {};  ///< the runs that are computed
     std::vector<std::string> arguments;  ///< of the command line, for hilda collect
     bool plot = true, quiet = false, json = false;
     std::vector<std::string> figure_formats;  ///< empty: png
-    DrawFigures draw;                         ///< empty: no figures
+    run::DrawFigures draw;                    ///< empty: no figures
     bool latex = false;                       ///< write study.tex
     std::vector<Expectation> expect;
     std::string command_line;          ///< recorded in study.json

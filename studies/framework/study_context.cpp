@@ -8,10 +8,10 @@
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "io/provenance.hpp"
+#include "run/figures.hpp"
+#include "run/named_model.hpp"
+#include "run/provenance.hpp"
 #include "studies/framework/latex.hpp"
-#include "studies/running/figures.hpp"
-#include "studies/running/named_model.hpp"
-#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 
@@ -35,11 +35,11 @@ std::string text_of(const std::optional<Value>& value)
 }
 
 /// The options on which the rows of a study depend, with the contents of its files
-FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
+run::FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
 {
-    FinishedJobs::Identity all = {
+    run::FinishedJobs::Identity all = {
         {"study", study},
-        {"version of the program", version_line()},
+        {"version of the program", run::version_line()},
         {"--problem", joined(o.problems)},
         {"--integrator", joined(o.integrators)},
         {"--steps", joined(o.steps)},
@@ -72,10 +72,10 @@ FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
     constexpr size_t most = 64 << 20;  // as for a model file
     std::error_code error;             // of names that the file system does not accept
     for (const std::string& problem : o.problems)
-        if (is_model_path(problem) && std::filesystem::is_regular_file(problem, error)) {
+        if (run::is_model_path(problem) && std::filesystem::is_regular_file(problem, error)) {
             std::string text = io::read_file(problem, most);
             try {  // the canonical form contains the meshes that the model names
-                text += named_model(problem, o.set, "").text;
+                text += run::named_model(problem, o.set, "").text;
             } catch (const io::InvalidInput&) {
                 // reported when the study reads the model
             }
@@ -95,7 +95,7 @@ std::string command_of(const StudyOptions& o)
 
 }  // namespace
 
-StudyContext::StudyContext(const Study& study, const StudyOptions& options, const JobRecords* collected)
+StudyContext::StudyContext(const Study& study, const StudyOptions& options, const run::JobRecords* collected)
     : name(study.name), keys(study.keys), options(options), answers(study.answers)
 {
     for (const Expectation& e : options.expect) {
@@ -108,11 +108,12 @@ StudyContext::StudyContext(const Study& study, const StudyOptions& options, cons
     if (options.vtk > 0 && options.output.empty())
         refuse("--vtk writes files: with --json it needs --output");
     if (collected != nullptr)
-        finished = std::make_unique<FinishedJobs>(*collected, identity(name, options));
+        finished = std::make_unique<run::FinishedJobs>(*collected, identity(name, options));
     else if (!options.output.empty())
-        finished = std::make_unique<FinishedJobs>(options.output, identity(name, options), options.resume,
-                                                  command_of(options));
-    sharing = std::make_unique<JobSharing>(JobSharing{.finished = finished.get(), .shard = options.shard});
+        finished = std::make_unique<run::FinishedJobs>(options.output, identity(name, options),
+                                                       options.resume, command_of(options));
+    sharing = std::make_unique<run::JobSharing>(
+        run::JobSharing{.finished = finished.get(), .shard = options.shard});
     if (options.resume && !options.quiet && collected == nullptr)
         io::message(fmt::format(
             "hilda: {} read from {}\n",
@@ -183,7 +184,7 @@ std::vector<Benchmark> StudyContext::benchmarks(const std::vector<std::string>& 
     return all;
 }
 
-Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) const
+run::Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) const
 {
     return {threads > 0 ? threads : options.jobs, options.quiet ? "" : name + label, static_cast<long>(jobs),
             sharing.get()};
@@ -192,14 +193,14 @@ Pool StudyContext::pool(size_t jobs, const std::string& label, int threads) cons
 void StudyContext::job(const std::function<void()>& job,
                        const std::function<void(io::Archive&)>& transfer) const
 {
-    JobSharing here{.finished = finished.get()};
-    Pool(1, "", 1, &here).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
+    run::JobSharing here{.finished = finished.get()};
+    run::Pool(1, "", 1, &here).run([&](long) { job(); }, [&](io::Archive& a, long) { transfer(a); });
 }
 
 void StudyContext::jobs(long count, const std::function<void(long)>& job,
-                        const Pool::Transfer& transfer) const
+                        const run::Pool::Transfer& transfer) const
 {
-    Pool(1, "", count, sharing.get()).run(job, transfer);
+    run::Pool(1, "", count, sharing.get()).run(job, transfer);
 }
 
 void StudyContext::evaluate(const std::vector<Criterion>& criteria)
@@ -259,10 +260,10 @@ io::Json StudyContext::whole() const
                       {"atol", s.atol > 0 ? io::Json(s.atol) : io::Json("as rtol")}}},
                     {"seed", options.seed.value_or(0)},
                     {"set", options.set},
-                    {"provenance", provenance(options.command_line, options.jobs)}};
+                    {"provenance", run::provenance(options.command_line, options.jobs)}};
     std::vector<std::string> models;
     for (const std::string& problem : options.problems)
-        if (is_model_path(problem)) models.push_back(problem);
+        if (run::is_model_path(problem)) models.push_back(problem);
     all["provenance"]["inputs"] = io::inputs(models);
     if (options.fix_initial) all["fix_initial"] = true;
     if (options.repeats > 0) all["repeats"] = options.repeats;
@@ -305,11 +306,12 @@ void StudyContext::write(const io::Json& whole_json) const
         written.push_back(file);
     }
     for (const std::string& figure : figures)
-        remove_figure(options.output, figure);  // those of an earlier run
+        run::remove_figure(options.output, figure);  // those of an earlier run
     if (options.plot && options.draw &&
         !options.draw(name + ".py", options.output, options.figure_formats).empty())
         for (const std::string& figure : figures)
-            for (const std::string& file : existing_figures(options.output, figure, options.figure_formats))
+            for (const std::string& file :
+                 run::existing_figures(options.output, figure, options.figure_formats))
                 written.push_back(file);
     if (options.json || options.quiet) return;
     std::cout << "\nwritten to " << options.output << ":";
@@ -367,7 +369,7 @@ int StudyContext::finish_shard()
         std::cout << fmt::format(
             "shard {} of study {} is complete: {}\nhilda collect, with the folders of all {} shards, writes "
             "the results\n",
-            options.shard.text(), name, FinishedJobs::shard_file(options.output), options.shard.count);
+            options.shard.text(), name, run::FinishedJobs::shard_file(options.output), options.shard.count);
     return io::exit_code::done;
 }
 

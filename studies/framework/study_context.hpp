@@ -6,12 +6,12 @@
 
 #include "io/json.hpp"
 #include "io/option_values.hpp"
+#include "run/jobs/finished_jobs.hpp"
+#include "run/jobs/pool.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/running/jobs/finished_jobs.hpp"
-#include "studies/running/jobs/pool.hpp"
 
 #include <algorithm>
 #include <map>
@@ -35,7 +35,7 @@ public:
     /// interrupted study.
     ///
     /// `collected`: the results of all runs, from shards; nullptr: they are computed.
-    StudyContext(const Study& study, const StudyOptions& options, const JobRecords* collected = nullptr);
+    StudyContext(const Study& study, const StudyOptions& options, const run::JobRecords* collected = nullptr);
 
     const std::string& name;
     const std::vector<std::string>& keys;  ///< of --expect
@@ -60,14 +60,14 @@ public:
                                       const DefaultEnd& end = end_of_model) const;
     /// A pool with this number of threads, or that of --jobs. Its progress line shows the name of the study
     /// and the label. The results of its jobs are kept in the file of the finished jobs.
-    Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
+    run::Pool pool(size_t jobs, const std::string& label = "", int threads = 0) const;
     /// Calls job(), on this thread and without a progress line, in each shard. `transfer`
     /// writes or reads its result, which is kept in the file of the finished jobs: a job that finished before
     /// the study was interrupted is not called again.
     void job(const std::function<void()>& job, const std::function<void(io::Archive&)>& transfer) const;
     /// Calls job(0) … job(count - 1), which do not depend on each other, one after the other on this thread
     /// and without a progress line; shards share them. See job() for `transfer`.
-    void jobs(long count, const std::function<void(long)>& job, const Pool::Transfer& transfer) const;
+    void jobs(long count, const std::function<void(long)>& job, const run::Pool::Transfer& transfer) const;
 
     // Results
     StudyText text;                                          ///< for stdout
@@ -115,9 +115,9 @@ private:
 
     const std::string& answers;  ///< of the study
     std::string failed_runs,
-        numerical_failure;                   ///< texts; empty if no run failed, or not enough for exit code 4
-    std::unique_ptr<FinishedJobs> finished;  ///< nullptr without an output directory
-    std::unique_ptr<JobSharing> sharing;     ///< of the pools
+        numerical_failure;  ///< texts; empty if no run failed, or not enough for exit code 4
+    std::unique_ptr<run::FinishedJobs> finished;  ///< nullptr without an output directory
+    std::unique_ptr<run::JobSharing> sharing;     ///< of the pools
 };
 
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known

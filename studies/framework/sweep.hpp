@@ -4,9 +4,9 @@
 #pragma once
 
 #include "io/error.hpp"
+#include "run/jobs/pool.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/study_context.hpp"
-#include "studies/running/jobs/pool.hpp"
 
 #include <numeric>
 #include <type_traits>

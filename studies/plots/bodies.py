@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snapshots: bodies in space at some times, drawn from the tables PREFIXposes.csv, PREFIXcontacts.csv and PREFIXshapes.json
-of a study (studies/running/frames/tables.hpp).
+of a study (run/frames/tables.hpp).
 
 The panels have equal scales on their axes and an orthographic projection. The polygons of all bodies are drawn from the
 farthest to the nearest one; those that face away from the viewer are not drawn.

@@ -10,7 +10,7 @@
 #include "lie/steps/accelerations.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 #include "reference/motions/ellipsoid_on_plane.hpp"
-#include "studies/running/contact_rows.hpp"
+#include "run/contact_rows.hpp"
 
 namespace hilda::studies {
 
@@ -44,7 +44,7 @@ double distance(const lie::Motion& a, const lie::Motion& b)
 /// -z; nullptr otherwise
 const EvolvingContact* only_contact(const dae::Model& model)
 {
-    const auto contacts = evolving_contacts(model);
+    const auto contacts = run::evolving_contacts(model);
     if (model.bodies() != 1 || contacts.size() != 1 || model.general_constraints().size() != 1 ||
         model.rows() > 9 || !model.forces().empty() || !model.all_rows().empty() ||
         contacts[0]->j != dae::ground)

@@ -3,9 +3,9 @@
 
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
+#include "run/figures.hpp"
+#include "run/frames/vtk.hpp"
 #include "studies/problems/n_pendulum.hpp"
-#include "studies/running/figures.hpp"
-#include "studies/running/frames/vtk.hpp"
 
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ std::string normal_rows(const std::string& option, const std::string& text)
 std::vector<std::string> formats_of_figures(const std::string& option, const std::string& text)
 {
     std::vector<std::string> selected = list(option, text);
-    const std::vector<std::string>& known = figure_formats();
+    const std::vector<std::string>& known = run::figure_formats();
     for (auto format = selected.begin(); format != selected.end(); ++format) {
         if (std::find(known.begin(), known.end(), *format) == known.end())
             throw io::UsageError(fmt::format("{}: unknown format{} (formats: {})", option,
@@ -78,7 +78,7 @@ std::vector<std::string> formats_of_figures(const std::string& option, const std
 
 int frames(const std::string& option, const std::string& text)
 {
-    return io::count_up_to(Snapshots::max_frames, option, text);
+    return io::count_up_to(run::Snapshots::max_frames, option, text);
 }
 
 std::vector<double> steps(const std::string& option, const std::string& text)
@@ -106,7 +106,7 @@ std::vector<int> bars(const std::string& option, const std::string& text)
     return N;
 }
 
-Shard shard(const std::string& option, const std::string& text)
+run::Shard shard(const std::string& option, const std::string& text)
 {
     constexpr long most = 1000000;
     const size_t slash = text.find('/');

@@ -49,7 +49,7 @@ std::vector<double> relative_tolerances(const std::string& option, const std::st
 std::vector<int> bars(const std::string& option, const std::string& text);
 
 /// I/N with 1 <= I <= N <= 1000000
-Shard shard(const std::string& option, const std::string& text);
+run::Shard shard(const std::string& option, const std::string& text);
 
 /// KEY=VALUE[+-TOL]
 Expectation expectation(const std::string& option, const std::string& text);

@@ -11,12 +11,12 @@
 #include "io/message.hpp"
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
+#include "run/contact_outputs.hpp"
+#include "run/events/run_events.hpp"
+#include "run/named_model.hpp"
+#include "run/output_columns.hpp"
+#include "run/run_settings.hpp"
 #include "studies/framework/recommended_integrator.hpp"
-#include "studies/running/contact_outputs.hpp"
-#include "studies/running/events/run_events.hpp"
-#include "studies/running/named_model.hpp"
-#include "studies/running/output_columns.hpp"
-#include "studies/running/run_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -75,7 +75,7 @@ Reactions largest_reactions(const dae::Model& model, const lie::State& x)
 /// The stability limit of the force with the default integrator [s]
 double stable_step(const dae::Force& force, const lie::State& x)
 {
-    return force.stable_step(x, lie::scheme(default_integrator).loads);
+    return force.stable_step(x, lie::scheme(run::default_integrator).loads);
 }
 
 /// Initial state of a compliant contact
@@ -148,16 +148,16 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
 {
     using contact::EvolvingContact;
     std::vector<ContactConstraintInfo> all;
-    const ContactOutputs contacts(model);
+    const run::ContactOutputs contacts(model);
     for (size_t k = 0; k < contacts.contacts.size(); ++k) {
-        const ContactOutputs::Contact& contact = contacts.contacts[k];
+        const run::ContactOutputs::Contact& contact = contacts.contacts[k];
         const EvolvingContact* c = contact.constraint;
         if (c == nullptr) continue;
         const dae::Constraint::Arguments at = model.arguments(*c, x);
         const bool fallback_active = dae::Model::mode(*c, x) == contact::EvolvingContact::fallback_active;
         const contact::ContactPoint contact_point =
             fallback_active ? contact.compliant->at(x).contact_state.contact_point : c->contact_point(at);
-        const ContactOutput loads = contacts.at(k, x);
+        const run::ContactOutput loads = contacts.at(k, x);
         all.push_back(
             {.name = c->name,
              .friction = c->friction == EvolvingContact::Friction::rolling    ? "rolling"
@@ -270,7 +270,7 @@ void write_projected(const dae::Description& d, const std::string& model, const 
     if (std::error_code error; std::filesystem::equivalent(model, file, error))
         throw io::UsageError("check: --fix would replace the model " + model + " itself; give another file");
     std::string text = dae::text_at(d, d.x);
-    if (is_model_path(model)) {
+    if (run::is_model_path(model)) {
         io::JsonSource fixed(text, file);
         copy_notes(io::JsonSource(io::read_file(model, io::JsonSource::max_bytes), model).root, fixed.root);
         text = io::written(fixed.root) + '\n';
@@ -282,10 +282,10 @@ void write_projected(const dae::Description& d, const std::string& model, const 
 
 }  // namespace
 
-int check_model(const CheckOptions& options)
+int check_model(const run::CheckOptions& options)
 {
     const bool fix_initial = options.fix_initial || !options.write.empty();
-    dae::Description d = named_model(options.model, options.set, options.normal_rows);
+    dae::Description d = run::named_model(options.model, options.set, options.normal_rows);
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
     for (std::string& w : contact::soft_friction_warnings(*d.model, d.x)) d.warnings.push_back(std::move(w));
@@ -293,12 +293,12 @@ int check_model(const CheckOptions& options)
     const dae::Model& model = *d.model;
     const Recommendation recommended = recommended_integrator(model, d.x, start.degrees_of_freedom);
     const size_t output_columns =
-        OutputColumns(model, outputs_and_events(d)).columns.size() - d.events.size();
+        run::OutputColumns(model, run::outputs_and_events(d)).columns.size() - d.events.size();
     const double energy = lie::energy(model, d.x);
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
     const std::vector<ContactConstraintInfo> constrained = contact_constraints(model, d.x);
-    const RowsOfGeneralConstraints general = rows_of_general_constraints(model, d.x);
+    const run::RowsOfGeneralConstraints general = run::rows_of_general_constraints(model, d.x);
     const int constraints = model.constraints() + general.others, rows = start.rows + general.of_others;
     double condition = std::nan("");
     if (!constrained.empty()) {

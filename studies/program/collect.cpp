@@ -3,11 +3,11 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
+#include "run/provenance.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/program/plot.hpp"
 #include "studies/program/run_study.hpp"
-#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 
@@ -28,24 +28,25 @@ bool is_file(const std::string& name)
     return fs::is_regular_file(name, error);
 }
 
-std::string entry(const JobRecords& records, const std::string& name)
+std::string entry(const run::JobRecords& records, const std::string& name)
 {
     const auto at = records.identity.find(name);
     return at == records.identity.end() ? "" : at->second;
 }
 
-JobRecords read_shard(const std::string& directory)
+run::JobRecords read_shard(const std::string& directory)
 {
-    const std::string file = FinishedJobs::shard_file(directory), part = FinishedJobs::part_file(directory);
+    const std::string file = run::FinishedJobs::shard_file(directory),
+                      part = run::FinishedJobs::part_file(directory);
     if (is_file(file)) {
-        JobRecords records = read_job_records(file);
+        run::JobRecords records = run::read_job_records(file);
         if (entry(records, "--shard").empty() || records.command.empty())
             throw io::IoError(file + ": is not the file of a shard");
         return records;
     }
     if (!is_file(part))
         throw io::UsageError("collect: " + directory + ": is not the output of hilda study --shard");
-    const std::string shard = entry(read_job_records(part), "--shard");
+    const std::string shard = entry(run::read_job_records(part), "--shard");
     throw io::UsageError(
         "collect: " + directory +
         (shard.empty() ? ": is an interrupted study; its command with --resume continues it"
@@ -60,7 +61,7 @@ std::string one_line(const std::string& value)
 }
 
 /// Refuses shards of two studies, of other options, other models or another program.
-void require_same(const JobRecords& a, const JobRecords& b)
+void require_same(const run::JobRecords& a, const run::JobRecords& b)
 {
     std::map<std::string, std::string> all = a.identity;
     all.insert(b.identity.begin(), b.identity.end());
@@ -71,9 +72,9 @@ void require_same(const JobRecords& a, const JobRecords& b)
                                              b.file));
 }
 
-Shard shard_of(const JobRecords& records)
+run::Shard shard_of(const run::JobRecords& records)
 {
-    Shard shard;
+    run::Shard shard;
     char slash = 0;
     std::istringstream text(entry(records, "--shard"));
     if (!(text >> shard.index >> slash >> shard.count) || shard.index < 1 || shard.index > shard.count)
@@ -130,21 +131,21 @@ void add_collect_options(CLI::App& c, CollectOptions& o)
     c.add_flag("--json", o.study.json, "print the result as JSON on stdout");
 }
 
-JobRecords read_shards(const std::vector<std::string>& directories)
+run::JobRecords read_shards(const std::vector<std::string>& directories)
 {
-    std::map<long, JobRecords> by_index;
+    std::map<long, run::JobRecords> by_index;
     long count = 0;
     for (const std::string& directory : directories) {
-        JobRecords records = read_shard(directory);
-        const Shard shard = shard_of(records);
+        run::JobRecords records = read_shard(directory);
+        const run::Shard shard = shard_of(records);
         if (by_index.empty()) {
             count = shard.count;
             if (const std::string version = entry(records, "version of the program");
-                version != version_line())
+                version != run::version_line())
                 throw io::UsageError("collect: " + records.file + " is of another version of the program, " +
-                                     version + "; this one is " + version_line());
+                                     version + "; this one is " + run::version_line());
         } else {
-            const JobRecords& first = by_index.begin()->second;
+            const run::JobRecords& first = by_index.begin()->second;
             require_same(first, records);
             if (shard.count != count)
                 throw io::UsageError(
@@ -168,13 +169,13 @@ JobRecords read_shards(const std::vector<std::string>& directories)
         }
         throw io::UsageError(fmt::format("collect: shards are missing: {}", fmt::join(missing, ", ")));
     }
-    JobRecords all = std::move(by_index.begin()->second);
+    run::JobRecords all = std::move(by_index.begin()->second);
     for (auto& [index, records] : by_index) all.results.merge(records.results);
     all.identity.erase("--shard");
     return all;
 }
 
-std::vector<std::string> words_of(const JobRecords& shards)
+std::vector<std::string> words_of(const run::JobRecords& shards)
 {
     std::vector<std::string> words;
     std::istringstream in(shards.command);
@@ -182,7 +183,7 @@ std::vector<std::string> words_of(const JobRecords& shards)
     return words;
 }
 
-int collect(const CollectOptions& collected, const JobRecords& shards, const std::string& kind,
+int collect(const CollectOptions& collected, const run::JobRecords& shards, const std::string& kind,
             StudyOptions options)
 {
     const StudyOptions& of = collected.study;

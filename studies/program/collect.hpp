@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "run/jobs/finished_jobs.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/jobs/finished_jobs.hpp"
 
 #include <functional>
 #include <string>
@@ -27,15 +27,15 @@ void add_collect_options(CLI::App& command, CollectOptions& to);
 /// The results of all shards, with the command line of one of them. io::UsageError with one line if a shard
 /// is missing, is there twice or has not ended, or if they are not of one study with the same options and the
 /// same version of the program.
-JobRecords read_shards(const std::vector<std::string>& directories);
+run::JobRecords read_shards(const std::vector<std::string>& directories);
 
 /// The words of the command line of the shards
-std::vector<std::string> words_of(const JobRecords& shards);
+std::vector<std::string> words_of(const run::JobRecords& shards);
 
 /// Writes study.csv, study.json and the figures, as the study writes them, and copies the other files of the
 /// shards, such as the motions of --keep. `kind` and `options` are those of the command line of the shards.
 /// Returns the exit code.
-int collect(const CollectOptions& collected, const JobRecords& shards, const std::string& kind,
+int collect(const CollectOptions& collected, const run::JobRecords& shards, const std::string& kind,
             StudyOptions options);
 
 }  // namespace hilda::studies

@@ -2,7 +2,7 @@
 #include "studies/program/columns_help.hpp"
 
 #include "dae/model_file.hpp"
-#include "studies/running/output_columns.hpp"
+#include "run/output_columns.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr const char* example = R"({"hilda_model": 1, "name": "example",
   {"name": "LENGTH", "type": "length", "body_i": "ground", "body_j": "BODY"}]})";
 
 /// One line for successive columns with the same unit and meaning: "BODY.rx, ry, rz   m   position ..."
-void append_columns(std::string& text, const ColumnGroup& group)
+void append_columns(std::string& text, const run::ColumnGroup& group)
 {
     const std::vector<dae::Quantity>& all = group.columns;
     for (size_t k = 0; k < all.size();) {
@@ -52,17 +52,17 @@ std::string columns_help()
         "Every table begins with the column t, the time [s]. With --format hdf5 the tables are groups of "
         "run.h5.\n";
     text += "\ntrajectory.csv\n";
-    append_columns(text, *body_columns(*d.model));
+    append_columns(text, *run::body_columns(*d.model));
     text +=
         "  energy\n      [J] kinetic energy plus potential energy of gravity, springs and contacts\n"
         "  constraint_norm\n      [m or rad] largest scaled residual of the position constraints\n"
         "  With --reactions: loads of the constraints, see docs/guide/outputs.md.\n";
     text += "\nforces.csv (--forces)\n";
-    append_columns(text, *force_columns(*d.model));
+    append_columns(text, *run::force_columns(*d.model));
     text += "\ncontacts.csv (--contacts)\n";
-    append_columns(text, *contact_columns(*d.model));
+    append_columns(text, *run::contact_columns(*d.model));
     text += "\noutputs.csv (\"outputs\" in the model file)\n";
-    append_columns(text, OutputColumns(*d.model, d.outputs));
+    append_columns(text, run::OutputColumns(*d.model, d.outputs));
     text += "  NAME\n      an output of type \"expression\": a formula in t and any of these columns\n";
     return text;
 }

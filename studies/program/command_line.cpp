@@ -2,12 +2,13 @@
 #include "studies/program/command_line.hpp"
 
 #include "io/error.hpp"
-#include "studies/cosim/communicator.hpp"
-#include "studies/cosim/cosim_file.hpp"
-#include "studies/cosim/grains.hpp"
-#include "studies/cosim/granular_program.hpp"
-#include "studies/importing/export_urdf.hpp"
-#include "studies/importing/import_model.hpp"
+#include "run/cosim/communicator.hpp"
+#include "run/cosim/cosim_file.hpp"
+#include "run/cosim/grains.hpp"
+#include "run/cosim/granular_program.hpp"
+#include "run/importing/export_urdf.hpp"
+#include "run/importing/import_model.hpp"
+#include "run/provenance.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/collect.hpp"
 #include "studies/program/columns_help.hpp"
@@ -18,11 +19,10 @@
 #include "studies/program/new_plugin.hpp"
 #include "studies/program/plot.hpp"
 #include "studies/program/plugin.hpp"
+#include "studies/program/repeating/rerun.hpp"
 #include "studies/program/run_study.hpp"
 #include "studies/program/study_commands.hpp"
 #include "studies/program/view.hpp"
-#include "studies/repeating/rerun.hpp"
-#include "studies/running/provenance.hpp"
 
 #include "io/nearest.hpp"
 #include "io/provenance.hpp"
@@ -47,7 +47,7 @@ public:
         : command_line_text(std::move(command_line_text))
     {
         run.options.plugins = study.plugins = plugins;
-        app.set_version_flag("--version", version_line());
+        app.set_version_flag("--version", run::version_line());
         app.set_help_flag("-h,--help", "print this text; hilda COMMAND --help: the options of a command");
         app.add_option(
                "--load", plugin_files,
@@ -97,8 +97,8 @@ public:
             return [this] { return help_of("", ""); };
         } catch (const CLI::CallForVersion&) {
             return [] {
-                std::cout << version_line() << "\nbuild: " << build_line() << "\nmodules: " << modules_line()
-                          << '\n';
+                std::cout << run::version_line() << "\nbuild: " << run::build_line()
+                          << "\nmodules: " << run::modules_line() << '\n';
                 return io::exit_code::done;
             };
         } catch (const CLI::ExtrasError&) {
@@ -131,7 +131,7 @@ private:
     {
         cosim.run.command_line = command_line_text;
         add_cosim_options(*add("cosim", "simulate a mechanism and grains that act on each other",
-                               [this] { return grains("cosim").run_cosim(cosim); }),
+                               [this] { return run::grains("cosim").run_cosim(cosim); }),
                           cosim);
     }
 
@@ -141,7 +141,7 @@ private:
         add_kinematics_options(
             *add("kinematics",
                  "compute the motion and the driver loads of a mechanism without degrees of freedom",
-                 [this] { return run_kinematics(kinematics); }),
+                 [this] { return run::run_kinematics(kinematics); }),
             kinematics);
     }
 
@@ -150,7 +150,7 @@ private:
         inverse.command_line = command_line_text;
         add_inverse_options(
             *add("inverse", "compute the loads of drivers that give joints a prescribed motion",
-                 [this] { return run_kinematics(inverse); }),
+                 [this] { return run::run_kinematics(inverse); }),
             inverse);
     }
 
@@ -158,8 +158,9 @@ private:
     {
         add_check_options(*add("check", "validate a model or a co-simulation file and print its properties",
                                [this] {
-                                   return is_cosim_file(check.model) ? grains("check").check_cosim(check)
-                                                                     : check_model(check);
+                                   return run::is_cosim_file(check.model)
+                                              ? run::grains("check").check_cosim(check)
+                                              : check_model(check);
                                }),
                           check);
     }
@@ -206,7 +207,7 @@ private:
     void add_collect()
     {
         CLI::App* c = add("collect", "write the results of a study from its shards (--shard)", [this] {
-            const JobRecords shards = read_shards(collected.directories);
+            const run::JobRecords shards = read_shards(collected.directories);
             std::vector<std::string> words = words_of(shards);
             words.insert(words.begin(), "hilda");
             std::vector<char*> argv;
@@ -229,7 +230,7 @@ private:
     void add_granular()
     {
         CLI::App* c = add("granular", "simulate a granular case, by the program hilda-granular",
-                          [this] { return start_granular(granular); });
+                          [this] { return run::start_granular(granular); });
         c->prefix_command();  // all arguments that follow, --help included, are for hilda-granular
         c->set_help_flag();
         c->callback([this, c] { granular = c->remaining(); });
@@ -259,14 +260,14 @@ private:
     void add_import()
     {
         add_import_options(*add("import", "write the model file of a mechanism in a URDF or MJCF file",
-                                [this] { return import_model(imported); }),
+                                [this] { return run::import_model(imported); }),
                            imported);
     }
 
     void add_export()
     {
         add_export_options(*add("export", "write the URDF file of a model that is a tree",
-                                [this] { return export_model(exported); }),
+                                [this] { return run::export_model(exported); }),
                            exported);
     }
 
@@ -320,7 +321,7 @@ private:
             std::cout << io::wrapped_help(Commands(command_line_text).app.help());
             return io::exit_code::done;
         }
-        if (command_name == "granular") return start_granular({"--help"});
+        if (command_name == "granular") return run::start_granular({"--help"});
         if (command_name == "outputs") {
             std::cout << columns_help();
             return io::exit_code::done;
@@ -379,9 +380,9 @@ private:
     std::vector<std::pair<CLI::App*, std::function<int()>>> actions;
 
     RunArguments run;
-    CosimOptions cosim;
-    KinematicsOptions kinematics, inverse;
-    CheckOptions check;
+    run::CosimOptions cosim;
+    run::KinematicsOptions kinematics, inverse;
+    run::CheckOptions check;
     StudyOptions study;
     CollectOptions collected;
     ReproduceOptions reproduction;
@@ -391,8 +392,8 @@ private:
     FitOptions fitted;
     ViewOptions shown;
     RerunOptions repeated;
-    ImportOptions imported;
-    ExportOptions exported;
+    run::ImportOptions imported;
+    run::ExportOptions exported;
     bool json = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
@@ -419,7 +420,7 @@ int command_line(int argc, char** argv)
     try {
         action = action_of(commands, static_cast<int>(words.size()), words.data());
     } catch (const io::UsageError&) {
-        if (rank_of_environment() > 0) return io::exit_code::wrong_command_line;  // rank 0 reports it
+        if (run::rank_of_environment() > 0) return io::exit_code::wrong_command_line;  // rank 0 reports it
         throw;
     }
     return action();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds the studies of the module hilda-grains.so to the list of studies.
-#include "studies/cosim/grains.hpp"
+#include "run/cosim/grains.hpp"
 #include "studies/framework/study.hpp"
 
 namespace hilda::studies {
@@ -10,7 +10,7 @@ namespace {
 /// The studies of the module register themselves when it is loaded.
 std::vector<Study> load_studies()
 {
-    find_grains("studies of grains");
+    run::find_grains("studies of grains");
     return {};
 }
 

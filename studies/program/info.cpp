@@ -6,11 +6,11 @@
 #include "io/provenance.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
-#include "studies/cosim/grains.hpp"
+#include "run/cosim/grains.hpp"
+#include "run/provenance.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/plot.hpp"
-#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 #include <hilda/version.hpp>
@@ -37,12 +37,12 @@ constexpr const char* devices = "CPU; hilda does not use GPUs (see hilda granula
 int info(bool json, const std::string& command_line)
 {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    io::Json all = provenance(command_line, cores);
+    io::Json all = run::provenance(command_line, cores);
     all["system"] = system_name();
     all["devices"] = devices;
     const std::string figures = python_and_matplotlib();
     all["figures"] = figures;
-    const GrainFunctions* const of_grains = find_grains("info");
+    const run::GrainFunctions* const of_grains = run::find_grains("info");
     const std::string vectors =
         of_grains != nullptr ? of_grains->vector_instructions() : "the module hilda-grains was not built";
     all["vector_instructions_of_grains"] = vectors;
@@ -54,10 +54,10 @@ int info(bool json, const std::string& command_line)
         std::cout << fmt::format("{:<14}{}\n", what, text);
     };
     line("version", fmt::format("{}, git {}", version::number, version::git));
-    line("build", build_line());
-    line("modules", modules_line());
+    line("build", run::build_line());
+    line("modules", run::modules_line());
     std::string versions;
-    for (const auto& [name, number] : libraries())
+    for (const auto& [name, number] : run::libraries())
         versions += (versions.empty() ? "" : ", ") + name + ' ' + number;
     line("libraries", versions);
     line("system", system_name());

@@ -3,10 +3,10 @@
 
 #include "io/error.hpp"
 #include "io/message.hpp"
+#include "run/sink.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/program/plot.hpp"
-#include "studies/running/sink.hpp"
 
 namespace hilda::studies {
 
@@ -23,11 +23,11 @@ void add_json(CLI::App& c, bool& to)
 
 void add_run_options(CLI::App& c, RunArguments& to)
 {
-    RunOptions& o = to.options;
+    run::RunOptions& o = to.options;
     add_model(c, o.model);
     values(c, "--integrator", "NAME[,NAME...]",
            std::string("integrators, one run each; hilda check names one that suits the model; default: ") +
-               default_integrator,
+               run::default_integrator,
            append(to.integrators, integrators));
     value(c, "--step", "H",
           "step size [s]; rA-dp-5, rA-dop853 and rA-radau-5 choose their own without it, ida-rp always; "
@@ -58,7 +58,7 @@ void add_run_options(CLI::App& c, RunArguments& to)
         "end with exit code 4 at the first warning about the solution, such as a large rotation in one step");
     value(c, "--checkpoint", "S", "wall time between checkpoints [s]; default: 0, no checkpoints",
           assign(o.checkpoint, nonnegative_number));
-    io::add_sink_options<RunSetup>(c, o.outputs);
+    io::add_sink_options<run::RunSetup>(c, o.outputs);
     o.draw = draw_figures;
     c.add_flag("--plot", o.plot, "draw trajectory.png as well");
     c.add_flag(
@@ -74,9 +74,9 @@ void add_run_options(CLI::App& c, RunArguments& to)
     c.add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
 }
 
-RunOptions run_options(const RunArguments& arguments)
+run::RunOptions run_options(const RunArguments& arguments)
 {
-    RunOptions o = arguments.options;
+    run::RunOptions o = arguments.options;
     if (o.force && o.resume) throw io::UsageError("run: --force and --resume exclude each other");
     if (o.error && o.resume) throw io::UsageError("run: --error compares whole runs; --resume excludes it");
     if (arguments.every && o.interval)
@@ -90,9 +90,9 @@ RunOptions run_options(const RunArguments& arguments)
     return o;
 }
 
-void add_cosim_options(CLI::App& c, CosimOptions& to)
+void add_cosim_options(CLI::App& c, run::CosimOptions& to)
 {
-    RunOptions& o = to.run;
+    run::RunOptions& o = to.run;
     c.add_option("FILE", to.file, "path of a co-simulation file")->required()->type_name("");
     value(c, "--end", "T", "end time [s]; default: that of the file", assign(o.end, positive_number));
     value(c, "--interval", "DT", "time between output rows of the mechanism [s]; default: that of the file",
@@ -116,13 +116,13 @@ void add_cosim_options(CLI::App& c, CosimOptions& to)
             to.transport = io::one_of(option, text, std::vector<std::string>{"in-process", "pipe", "mpi"});
         });
     value(c, "--threads", "N", "threads of the grains; default: 1", assign(o.threads, positive_count));
-    io::add_sink_options<RunSetup>(c, o.outputs);
+    io::add_sink_options<run::RunSetup>(c, o.outputs);
     add_json(c, o.json);
     c.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
     c.add_flag("-v,--verbose", o.verbose, "report initial residuals and checkpoints on stderr");
 }
 
-void add_kinematics_options(CLI::App& c, KinematicsOptions& o)
+void add_kinematics_options(CLI::App& c, run::KinematicsOptions& o)
 {
     add_model(c, o.model);
     value(c, "--end", "T", "end time [s]; default: that of the model", assign(o.end, positive_number));
@@ -132,12 +132,12 @@ void add_kinematics_options(CLI::App& c, KinematicsOptions& o)
     add_fix_initial(c, "", o.fix_initial);
     add_output(c, "--force", "out/NAME", o.output);
     c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
-    io::add_sink_options<RunSetup>(c, o.outputs);
+    io::add_sink_options<run::RunSetup>(c, o.outputs);
     add_json(c, o.json);
     c.add_flag("--quiet", o.quiet, "print no result and no warnings");
 }
 
-void add_inverse_options(CLI::App& c, KinematicsOptions& o)
+void add_inverse_options(CLI::App& c, run::KinematicsOptions& o)
 {
     o.inverse = true;
     add_kinematics_options(c, o);
@@ -150,7 +150,7 @@ void add_inverse_options(CLI::App& c, KinematicsOptions& o)
     add_figure_format(c, o.figure_formats);
 }
 
-void add_check_options(CLI::App& c, CheckOptions& o)
+void add_check_options(CLI::App& c, run::CheckOptions& o)
 {
     add_model(c, o.model);
     add_set(c, "the model", o.set);
@@ -163,7 +163,7 @@ void add_check_options(CLI::App& c, CheckOptions& o)
     c.add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
 }
 
-void add_import_options(CLI::App& c, ImportOptions& to)
+void add_import_options(CLI::App& c, run::ImportOptions& to)
 {
     c.add_option("FILE", to.file, "URDF or MJCF file")->required()->type_name("");
     value(c, "--output", "FILE", "the model file; default: NAME.json in the current directory",
@@ -177,7 +177,7 @@ void add_import_options(CLI::App& c, ImportOptions& to)
     c.add_flag("--force", to.force, "replace a file that exists");
 }
 
-void add_export_options(CLI::App& c, ExportOptions& to)
+void add_export_options(CLI::App& c, run::ExportOptions& to)
 {
     c.add_option("MODEL", to.model, "name of a built-in model, or path of a model file")
         ->required()

@@ -6,7 +6,7 @@
 #include "io/nearest.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
-#include "studies/cosim/grains.hpp"
+#include "run/cosim/grains.hpp"
 
 #include <fmt/format.h>
 
@@ -87,7 +87,7 @@ void check_name(const Kind& kind, const std::string& name)
             "new: NAME must begin with a letter and contain letters, digits, - and _ only, got '" + name +
             "'");
     if (kind.name == "granular-law") {
-        const std::vector<std::string> laws = grains("new granular-law").law_names("normal");
+        const std::vector<std::string> laws = run::grains("new granular-law").law_names("normal");
         if (std::find(laws.begin(), laws.end(), name) != laws.end())
             throw io::UsageError("new: there is a normal law '" + name + "'; choose another name");
         return;

@@ -12,11 +12,11 @@
 #include "io/message.hpp"
 #include "io/registry.hpp"
 #include "lie/schemes.hpp"
+#include "run/plugin_interface.hpp"
+#include "run/sink.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/plot.hpp"
-#include "studies/running/plugin_interface.hpp"
-#include "studies/running/sink.hpp"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,8 @@ size_t entries()
 size_t registered_entries()
 {
     return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart,
-                   contact::SurfaceType, contact::NormalLawType, contact::FrictionLaw, Problem, SinkType>() +
+                   contact::SurfaceType, contact::NormalLawType, contact::FrictionLaw, Problem,
+                   run::SinkType>() +
            studies().size();
 }
 

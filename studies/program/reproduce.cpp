@@ -8,9 +8,9 @@
 #include "io/program.hpp"
 #include "io/progress.hpp"
 #include "io/provenance.hpp"
+#include "run/jobs/finished_jobs.hpp"
+#include "run/provenance.hpp"
 #include "studies/program/reproduction.hpp"
-#include "studies/running/jobs/finished_jobs.hpp"
-#include "studies/running/provenance.hpp"
 
 #include <fmt/format.h>
 
@@ -224,7 +224,7 @@ private:
         std::vector<std::string> command = r.entry->words(o.full);
         command.insert(command.end(), {"--jobs", std::to_string(jobs), "--output", in});
         if (!o.plot) command.emplace_back("--no-plot");
-        if (o.resume && FinishedJobs::in(in))
+        if (o.resume && run::FinishedJobs::in(in))
             command.emplace_back("--resume");
         else if (!io::is_missing_or_empty(in))
             command.emplace_back("--force");
@@ -263,7 +263,7 @@ private:
                 counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count(status), status);
         const std::string text =
             page(all,
-                 {{"version", version_line()},
+                 {{"version", run::version_line()},
                   {"machine", fmt::format("{}, {}", io::processor(), io::counted(cores, "core"))},
                   {"date", utc_now()},
                   {"grids",
@@ -294,8 +294,9 @@ private:
     int processes = 1, jobs_each = 1;
     std::vector<Reproduced> all;
     /// reproduce.json: the mode, the version, and by name the studies that have ended, also of other chapters
-    io::Json record = {
-        {"mode", o.full ? "full" : "quick"}, {"version", version_line()}, {"finished", io::Json::object()}};
+    io::Json record = {{"mode", o.full ? "full" : "quick"},
+                       {"version", run::version_line()},
+                       {"finished", io::Json::object()}};
     std::optional<io::OutputLock> lock;
     size_t ended_now = 0;
     const Clock::time_point begin = Clock::now();

@@ -5,10 +5,10 @@
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
+#include "run/named_model.hpp"
+#include "run/single_run.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/named_model.hpp"
-#include "studies/running/single_run.hpp"
-#include "studies/running/watch/run_check.hpp"
 
 #include <iostream>
 
@@ -18,9 +18,10 @@ namespace {
 
 /// Output directory of each integrator. Directories that are not empty are rejected before the first run
 /// starts.
-std::vector<std::string> directories(const RunOptions& options)
+std::vector<std::string> directories(const run::RunOptions& options)
 {
-    const std::string output = options.output.empty() ? "out/" + short_name(options.model) : options.output;
+    const std::string output =
+        options.output.empty() ? "out/" + run::short_name(options.model) : options.output;
     std::vector<std::string> all;
     for (const std::string& name : options.integrators) {
         all.push_back(options.integrators.size() == 1 ? output : output + '/' + name);
@@ -30,19 +31,19 @@ std::vector<std::string> directories(const RunOptions& options)
 }
 
 /// The scheme with this name. If it has both forms, --step selects that with a fixed step.
-const lie::Scheme& scheme_of(const std::string& name, const RunOptions& options)
+const lie::Scheme& scheme_of(const std::string& name, const run::RunOptions& options)
 {
     const lie::Scheme& scheme = lie::scheme(name);
     return options.step ? scheme : scheme.with_adaptive_steps();
 }
 
 /// Rejects options that do not apply to an integrator with adaptive steps, or to one that could have them
-void refuse_for_adaptive(const RunOptions& options)
+void refuse_for_adaptive(const run::RunOptions& options)
 {
     for (const std::string& name : options.integrators) {
         const lie::Scheme& scheme = scheme_of(name, options);
         const auto refuse = [&](const std::string& why) { throw io::UsageError("run: " + name + " " + why); };
-        check_step_options(scheme, options.given_settings, options.step.has_value(), options.interval);
+        run::check_step_options(scheme, options.given_settings, options.step.has_value(), options.interval);
         if (!scheme.adaptive) continue;
         if (!scheme.resumes && (options.resume || options.checkpoint > 0))
             refuse(
@@ -53,7 +54,7 @@ void refuse_for_adaptive(const RunOptions& options)
 
 }  // namespace
 
-int run_model(const RunOptions& options)
+int run_model(const run::RunOptions& options)
 {
     refuse_for_adaptive(options);
     std::vector<const lie::Scheme*> schemes;
@@ -68,10 +69,10 @@ int run_model(const RunOptions& options)
             code = io::exit_code::signal + io::Interrupt::caught();
             break;
         }
-        RunResult result;
+        run::RunResult result;
         try {
-            result = SingleRun(options, *schemes[k], directory[k]).execute();
-        } catch (const RunHasEnded& ended) {
+            result = run::SingleRun(options, *schemes[k], directory[k]).execute();
+        } catch (const run::RunHasEnded& ended) {
             if (directory.size() == 1) throw;
             if (!options.quiet) io::warning(ended.what() + std::string("; skipped"));
             continue;

@@ -3,8 +3,8 @@
 
 #include "io/files.hpp"
 #include "io/program.hpp"
-#include "studies/cosim/communicator.hpp"
-#include "studies/cosim/grains.hpp"
+#include "run/cosim/communicator.hpp"
+#include "run/cosim/grains.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
@@ -111,7 +111,7 @@ const Study& find_study(const std::string& kind)
         if (study.name == kind) return study;
         known.push_back(study.name);
     }
-    if (kind.starts_with("granular-")) grains("study " + kind);  // says what is missing
+    if (kind.starts_with("granular-")) run::grains("study " + kind);  // says what is missing
     throw io::UsageError("study: unknown study" + with_nearest(kind, known) + " (hilda study lists them)");
 }
 
@@ -152,13 +152,13 @@ void complete(StudyOptions& options, const Study& study)
         throw io::UsageError("study " + kind + ": --force and --resume exclude each other");
 }
 
-int run_here(const Study& study, const StudyOptions& options, const JobRecords* collected)
+int run_here(const Study& study, const StudyOptions& options, const run::JobRecords* collected)
 {
     std::optional<io::OutputLock> lock;
     if (!options.output.empty()) {
         io::check_output_directory(
             options.output, options.force || options.resume,
-            FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
+            run::FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
         lock.emplace(options.output).create();
     }
     const io::EndOnSignal end_on_signal(options.output.empty() || collected != nullptr
@@ -170,7 +170,7 @@ int run_here(const Study& study, const StudyOptions& options, const JobRecords* 
         context.emplace(study, options, collected);
         study.run(*context);
         return context->finish();
-    } catch (const PartDone&) {
+    } catch (const run::PartDone&) {
         return context->finish_shard();
     } catch (...) {
         context.reset();
@@ -186,7 +186,7 @@ int run_study(const std::string& kind, StudyOptions options)
 {
     const Study& study = find_study(kind);
     complete(options, study);
-    if (const int ranks = ranks_of_environment(); ranks > 1 && !options.shard.is_part())
+    if (const int ranks = run::ranks_of_environment(); ranks > 1 && !options.shard.is_part())
         throw io::UsageError(
             fmt::format("study {}: each of the {} processes of mpirun would compute the whole "
                         "study; use --shard I/N and hilda collect",
@@ -194,7 +194,7 @@ int run_study(const std::string& kind, StudyOptions options)
     return run_here(study, options, nullptr);
 }
 
-int run_collected(const std::string& kind, StudyOptions options, const JobRecords& collected)
+int run_collected(const std::string& kind, StudyOptions options, const run::JobRecords& collected)
 {
     const Study& study = find_study(kind);
     complete(options, study);

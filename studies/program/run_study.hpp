@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "run/jobs/finished_jobs.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/jobs/finished_jobs.hpp"
 
 #include <string>
 
@@ -21,6 +21,6 @@ bool takes_option(const Study& study, const std::string& option);
 int run_study(const std::string& kind, StudyOptions options);
 
 /// The same with the results of all runs, from shards: no run is computed.
-int run_collected(const std::string& kind, StudyOptions options, const JobRecords& collected);
+int run_collected(const std::string& kind, StudyOptions options, const run::JobRecords& collected);
 
 }  // namespace hilda::studies

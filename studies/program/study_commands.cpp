@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/study_commands.hpp"
 
+#include "run/tables/run_table.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/program/run_study.hpp"
-#include "studies/running/tables/run_table.hpp"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ void add_selection(CLI::App& c, StudyOptions& o)
     c.add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
     value(c, "--format", "csv|hdf5",
           "format of the motions of --keep: trajectory.csv, or run.h5; default: csv",
-          assign(o.format, table_format));
+          assign(o.format, run::table_format));
     add_fix_initial(c, "", o.fix_initial);
     add_settings(c, o.settings, o.given_settings);
 }

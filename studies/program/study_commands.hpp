@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "studies/fitting/fit_command.hpp"
 #include "studies/framework/study.hpp"
+#include "studies/program/fit_command.hpp"
 #include "studies/program/plot.hpp"
 #include "studies/program/reproduce.hpp"
 #include "studies/program/view.hpp"

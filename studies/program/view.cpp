@@ -5,9 +5,9 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/formats/csv.hpp"
+#include "run/frames/drawn_patches.hpp"
+#include "run/frames/model_frames.hpp"
 #include "studies/program/plot.hpp"
-#include "studies/running/frames/drawn_patches.hpp"
-#include "studies/running/frames/model_frames.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -55,14 +55,14 @@ private:
 };
 
 /// Extends the drawn patches by the rows of trajectory.csv.
-void extend(DrawnPatches& patches, const std::string& file, const std::vector<dae::Body>& bodies)
+void extend(run::DrawnPatches& patches, const std::string& file, const std::vector<dae::Body>& bodies)
 {
     std::string text = io::read_file(file, largest_table);
     text.resize(text.rfind('\n') + 1);  // a run that goes on has written a part of its last row
     if (text.empty()) return;
     io::read_csv(text, file, [&](const io::CsvRow& cells) {
         const Row row(cells);
-        Drawing::Frame frame{.t = row.at("t"), .body = {}, .contacts = {}};
+        run::Drawing::Frame frame{.t = row.at("t"), .body = {}, .contacts = {}};
         for (const dae::Body& of : bodies) {
             lie::Motion& body = frame.body.emplace_back();
             for (int i = 0; i < 3; ++i) {
@@ -79,9 +79,9 @@ void extend(DrawnPatches& patches, const std::string& file, const std::vector<da
 std::string geometry(const fs::path& directory)
 {
     const dae::Description d = dae::load_model(directory / "model.json");
-    Drawing drawing;
-    ModelDrawing(*d.model).add_to(drawing);
-    DrawnPatches patches(drawing);
+    run::Drawing drawing;
+    run::ModelDrawing(*d.model).add_to(drawing);
+    run::DrawnPatches patches(drawing);
     if (patches.depend_on_frames()) {
         patches.extend({.t = d.x.t, .body = d.x.body, .contacts = {}});
         if (has_file(directory / "trajectory.csv"))

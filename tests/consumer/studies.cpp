@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "run/tables/run_table.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/running/tables/run_table.hpp"
 
 int main(int argc, char**)
 {
-    if (argc > 1) hilda::studies::hdf5_tables(".", {});  // throws without the module
+    if (argc > 1) hilda::run::hdf5_tables(".", {});  // throws without the module
     const auto named = [](const auto& list, const char* name) {
         return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
     };

@@ -22,7 +22,7 @@ import sys
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-ROOMS = ("io", "lie", "dae", "contact", "granular", "reference", "studies", "python")
+ROOMS = ("io", "lie", "dae", "contact", "granular", "reference", "run", "studies", "python")
 BASIC = {"DP1", "DP2", "D", "CD"}  # constraints that are no joints; neither are drivers
 FAULTS = []
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/running/checkpoint.hpp"
+#include "run/checkpoint.hpp"
 #include "dae/model_file.hpp"
 #include "dae/start.hpp"
 #include "io/error.hpp"
@@ -22,9 +22,9 @@ const dae::Description& pendulum()
     return d;
 }
 
-studies::Checkpoint valid_checkpoint()
+run::Checkpoint valid_checkpoint()
 {
-    studies::Checkpoint c;
+    run::Checkpoint c;
     c.settings = {{"model", "0123"}, {"--integrator", "rA-half-1"}};
     c.end = 1, c.interval = 10;
     c.node = c.pivots = pendulum().x;
@@ -38,7 +38,7 @@ void checkpoint(std::string_view input)
 {
     static const std::string valid = to_bytes(valid_checkpoint());
     try {
-        const studies::Checkpoint c = studies::from_bytes(sealed(input, valid), "checkpoint");
+        const run::Checkpoint c = run::from_bytes(sealed(input, valid), "checkpoint");
         check_fits(c, *pendulum().model, pendulum().x, "checkpoint");
         to_bytes(c);
     } catch (const io::IoError&) {

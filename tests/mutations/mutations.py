@@ -29,7 +29,7 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 LIST = os.path.join("tests", "mutations", "mutations.json")
 PAGE = os.path.join("tests", "mutations.md")
 ROOMS = ["io", "lie", "dae", "contact", "granular"]
-PARTS = ROOMS + ["reference", "studies", "python", "tests", "examples", "docs", "cmake"]
+PARTS = ROOMS + ["reference", "run", "studies", "python", "tests", "examples", "docs", "cmake"]
 LEAST = 0.9  # of the faults must be found
 
 INTRODUCTION = """# Faults that the tests find

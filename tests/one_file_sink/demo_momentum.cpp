@@ -5,11 +5,11 @@
 #include "dae/model.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
-#include "studies/running/sink.hpp"
+#include "run/sink.hpp"
 
 #include <algorithm>
 
-namespace hilda::studies {
+namespace hilda::run {
 namespace {
 
 class DemoMomentum final : public RowsSink {
@@ -65,4 +65,4 @@ const bool registered = io::Registry<SinkType>::add(
      .files = {"momentum.csv"}});
 
 }  // namespace
-}  // namespace hilda::studies
+}  // namespace hilda::run

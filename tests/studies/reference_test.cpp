@@ -4,9 +4,9 @@
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
 #include "studies/framework/study_context.hpp"
-#include "tests/studies/adaptive_scheme.hpp"
-#include "tests/studies/csv.hpp"
-#include "tests/studies/refused.hpp"
+#include "tests/support/adaptive_scheme.hpp"
+#include "tests/support/csv.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

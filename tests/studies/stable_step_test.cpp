@@ -3,16 +3,16 @@
 
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "studies/running/single_run.hpp"
-#include "tests/studies/program.hpp"
-#include "tests/studies/refused.hpp"
+#include "run/single_run.hpp"
 #include "tests/support/bristle_contacts.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 using namespace hilda;
-using studies::SingleRun;
+using run::SingleRun;
 
 namespace {
 
@@ -20,7 +20,7 @@ namespace {
 struct BristleModel {
     const tests::BristleContacts reader;
     const tests::Scratch in;
-    studies::RunOptions options;
+    run::RunOptions options;
 
     BristleModel()
     {
@@ -31,7 +31,7 @@ struct BristleModel {
         options.model = (in / "m.json").string();
         options.quiet = true;
     }
-    studies::RunResult run(const std::string& scheme = "rA-half-1") const
+    run::RunResult run(const std::string& scheme = "rA-half-1") const
     {
         return SingleRun(options, lie::scheme(scheme), directory()).execute();
     }
@@ -105,7 +105,7 @@ TEST_CASE("a killed run with --force is resumed and gives the result of an unint
     m.options.force = false;
     m.options.resume = true;
     m.options.checkpoint = 0;
-    const studies::RunResult resumed = m.run();
+    const run::RunResult resumed = m.run();
     CHECK(resumed.status == "ok");
     CHECK(resumed.resumed_at > 50);
     CHECK(tests::read(m.in / "out/trajectory.csv") == whole);

@@ -17,10 +17,10 @@
 
 #include "dae/model_file.hpp"
 #include "lie/solver/saddle.hpp"
+#include "run/diagnosis.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/convergence_study.hpp"
 #include "studies/framework/evaluated_run.hpp"
-#include "studies/running/diagnosis.hpp"
 
 #include <fmt/format.h>
 
@@ -142,7 +142,7 @@ void print_fits(const std::vector<Series>& all, const Benchmark& c, StudyText& o
                  {"v", "{:.2f}"},
                  {"omega", "{:.2f}"},
                  {"Q", "{:.2f}"},
-                 {"r [m] at " + step_text(all.front().back()->h) + " s"},
+                 {"r [m] at " + run::step_text(all.front().back()->h) + " s"},
                  {"status"}});
     for (const Series& series : all) {
         const ErrorRun& first = *series.front();
@@ -154,7 +154,7 @@ void print_fits(const std::vector<Series>& all, const Benchmark& c, StudyText& o
         const auto failed =
             std::find_if(series.begin(), series.end(), [](const ErrorRun* r) { return r->failed(); });
         row.emplace_back(failed == series.end() ? "ok"
-                                                : (*failed)->status + " at " + step_text((*failed)->h));
+                                                : (*failed)->status + " at " + run::step_text((*failed)->h));
         table.add(row);
     }
     out << '\n';
@@ -172,17 +172,17 @@ void print_overview(const std::vector<Series>& all, const std::vector<Benchmark>
     out << fmt::format(
         "r: position error, rms over {0} instants [m]. Q: relative error of constraint loads, rms.\n"
         "order: slope of log(error) over log(h), h <= {1} s. iter: Newton iterations per step, h={1} s.\n",
-        problems.front().instants.count / problems.front().instants.stride, step_text(large));
+        problems.front().instants.count / problems.front().instants.stride, run::step_text(large));
     bool floor = false;
     for (const Benchmark& c : problems) {
         out << fmt::format("\n{}, {} s; reference solution: {}\n", c.problem.name, c.end, c.reference_name);
         Table table({{"integrator"},
                      {"order of r", "{:.2f}"},
-                     {"r, h=" + step_text(large)},
-                     {"r, h=" + step_text(small)},
+                     {"r, h=" + run::step_text(large)},
+                     {"r, h=" + run::step_text(small)},
                      {"order of Q", "{:.2f}"},
-                     {"Q, h=" + step_text(large)},
-                     {"Q, h=" + step_text(small)},
+                     {"Q, h=" + run::step_text(large)},
+                     {"Q, h=" + run::step_text(small)},
                      {"iter", "{:.2f}"}});
         for (const Series& series : all) {
             if (series.front()->c != &c) continue;

@@ -12,10 +12,10 @@
 #include "dae/constraints/dp2.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
+#include "run/frames/model_frames.hpp"
+#include "run/frames/tables.hpp"
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/sweep.hpp"
-#include "studies/running/frames/model_frames.hpp"
-#include "studies/running/frames/tables.hpp"
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ constexpr double mechanisms_end =
 
 struct SnapshotRun : Run {
     int bodies = 0, CD = 0, DP1 = 0, DP2 = 0, D = 0, other_rows = 0, degrees_of_freedom = 0;
-    SnapshotTables tables = {};
+    run::SnapshotTables tables = {};
 
     int rows() const { return CD + DP1 + DP2 + D + other_rows; }
     void transfer(io::Archive& a)
@@ -56,7 +56,7 @@ void count_rows(SnapshotRun& run, const dae::Model& model, const lie::State& sta
            : dynamic_cast<const dae::D*>(block) != nullptr   ? run.D
                                                              : run.other_rows);
     }
-    const RowsOfGeneralConstraints general = rows_of_general_constraints(model, start);
+    const run::RowsOfGeneralConstraints general = run::rows_of_general_constraints(model, start);
     run.other_rows += general.of_others + general.of_contacts;
     run.degrees_of_freedom = 6 * run.bodies - static_cast<int>(model.active_rows().size()) -
                              general.of_others - general.of_contacts;
@@ -66,16 +66,17 @@ void compute(SnapshotRun& run, const lie::Settings& settings)
 {
     const dae::Description& d = *run.c->started;
     count_rows(run, *d.model, d.x);
-    ModelFrames frames(*d.model, EvenSelection(path_points, std::lround(run.c->end / run.h)));
+    run::ModelFrames frames(*d.model, run::EvenSelection(path_points, std::lround(run.c->end / run.h)));
     lie::Observer* observers[] = {&frames};
     march(run, settings, observers);
     std::vector<std::string> bodies;
     for (const dae::Body& body : d.model->all_bodies()) bodies.push_back(body.name);
     std::vector<std::string> contacts;
-    for (const ContactOutputs::Contact& c : ContactOutputs(*d.model).contacts) contacts.push_back(c.name);
+    for (const run::ContactOutputs::Contact& c : run::ContactOutputs(*d.model).contacts)
+        contacts.push_back(c.name);
     std::vector<double> shown;
     for (int k = 0; k < snapshots; ++k) shown.push_back(d.x.t + run.c->end * k / (snapshots - 1));
-    run.tables = snapshot_tables(frames.snapshots, run.c->problem.name, bodies, contacts, shown);
+    run.tables = run::snapshot_tables(frames.snapshots, run.c->problem.name, bodies, contacts, shown);
 }
 
 /// Table 3.1
@@ -128,12 +129,12 @@ void draw_snapshots(StudyContext& s)
         s.text, those(runs, [](const SnapshotRun&) { return true; }),
         {"problem", "bodies", "CD", "DP1", "DP2", "D", "other_rows", "rows", "degrees_of_freedom", "status"});
     s.json["runs"] = columns.array(runs, {"bodies", "rows", "degrees_of_freedom"});
-    std::vector<SnapshotTables> tables;
+    std::vector<run::SnapshotTables> tables;
     for (const SnapshotRun& run : runs) {
         tables.push_back(run.tables);
         s.figures.push_back("snapshots-" + run.c->problem.name + ".png");
     }
-    s.files = snapshot_files("", tables);
+    s.files = run::snapshot_files("", tables);
     s.results(columns, runs);
     if (s.options.check) s.evaluate(criteria_of_mechanisms(runs));
 }

@@ -22,7 +22,7 @@ void WorkBalance::add(const lie::State& x)
         ForceWork& work = force[k];
         own.set_zero();
         f.add(x, own);
-        const double power_of_force = power(own, x);
+        const double power_of_force = run::power(own, x);
         work.power.add(power_of_force, h);
         work.potential = f.potential_energy(x);
         if (first) work.potential_start = work.potential;

@@ -17,7 +17,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "studies/running/watch/energy_balance.hpp"
+#include "run/watch/energy_balance.hpp"
 
 #include <string>
 #include <vector>
@@ -44,7 +44,7 @@ private:
     struct ForceWork {
         bool conservative = true;
         double potential_start = 0, potential = 0;  ///< V_f at the first and at the last node [J]
-        NodeIntegral power;
+        run::NodeIntegral power;
     };
     bool is_conservative(const dae::Force& force, double power_of_force, const lie::State& x);
     double power_of_drivers(const lie::State& x);
@@ -52,7 +52,7 @@ private:
     const dae::Model& model;
     std::vector<ForceWork> force;
     std::vector<bool> driven;  ///< for each constraint of the model
-    NodeIntegral driver_work;
+    run::NodeIntegral driver_work;
     double t = 0;
     bool first = true;
 

@@ -9,10 +9,10 @@
 /// --against FILE compares every step of the runs with the columns of a table. --check adds the runs that
 /// only the criteria need, and returns exit code 6 if a criterion fails.
 
+#include "run/frames/tables.hpp"
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
-#include "studies/running/frames/tables.hpp"
 
 #include "io/error.hpp"
 
@@ -35,7 +35,7 @@ struct SelectedExperiment {
     std::vector<ExperimentRun> runs = {};
     std::vector<Curve> curves = {};
     std::vector<std::string> failures = {};
-    std::vector<SnapshotTables> snapshots = {};
+    std::vector<run::SnapshotTables> snapshots = {};
 
     bool has_snapshots() const
     {
@@ -116,7 +116,7 @@ std::vector<Checked> checked(const SelectedExperiment& c)
 void compute(SelectedExperiment& c, size_t r, const StudyOptions& options)
 {
     const std::string name = c.experiment->name + '-' + c.runs[r].name;
-    if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
+    if (options.force && !options.output.empty()) run::Snapshots::remove(options.output, name);
     const BodyOnPlane setup = c.runs[r].setup();
     const std::vector<double>& times = c.runs[r].snapshots;
     std::vector<Frames> frames;
@@ -130,8 +130,8 @@ void compute(SelectedExperiment& c, size_t r, const StudyOptions& options)
     }
     if (with_frames) frames.back().snapshots.write(options.output, name);
     if (!times.empty())
-        c.snapshots[r] = snapshot_tables(frames.front().snapshots, c.runs[r].name, {setup.name, "plane"},
-                                         {setup.name}, times);
+        c.snapshots[r] = run::snapshot_tables(frames.front().snapshots, c.runs[r].name, {setup.name, "plane"},
+                                              {setup.name}, times);
 }
 
 void friction_experiments(StudyContext& s)
@@ -170,7 +170,8 @@ void friction_experiments(StudyContext& s)
         s.files.emplace_back(e.name + ".csv", curves(c));
         s.figures.push_back(fmt::format("{}-{}.png", s.name, e.name));
         if (c.has_snapshots()) {
-            for (auto& file : snapshot_files(e.name + '-', c.snapshots)) s.files.push_back(std::move(file));
+            for (auto& file : run::snapshot_files(e.name + '-', c.snapshots))
+                s.files.push_back(std::move(file));
             s.figures.push_back(fmt::format("{}-{}-snapshots.png", s.name, e.name));
         }
         for (size_t r = 0; r < c.runs.size(); ++r) named.push_back({e.name, c.runs[r].name, &c.curves[r]});

@@ -15,7 +15,7 @@ constexpr int interval = 50;                           // steps between the fram
 StackSnapshots stack_snapshots(const Stack& stack, const std::string& run, double h, double end)
 {
     contact::Scene of = scene(stack);
-    Snapshots snapshots;
+    run::Snapshots snapshots;
     for (const contact::Scene::Pair& p : of.pair) {
         snapshots.add_surface(p.i, p.contact.i);
         snapshots.add_surface(p.j, p.contact.j);
@@ -39,8 +39,9 @@ StackSnapshots stack_snapshots(const Stack& stack, const std::string& run, doubl
         result.slide_saturates |= ground.slide.slipping;
     }
     result.t = of.t;
-    result.tables = snapshot_tables(snapshots, run, {"left", "right", "top", "ground"},
-                                    {"top-left", "top-right", "left-ground", "right-ground"}, {0, result.t});
+    result.tables =
+        run::snapshot_tables(snapshots, run, {"left", "right", "top", "ground"},
+                             {"top-left", "top-right", "left-ground", "right-ground"}, {0, result.t});
     return result;
 }
 

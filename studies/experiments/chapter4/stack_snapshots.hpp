@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "run/frames/tables.hpp"
 #include "studies/experiments/chapter4/stack.hpp"
-#include "studies/running/frames/tables.hpp"
 
 namespace hilda::studies {
 
@@ -16,7 +16,7 @@ struct StackSnapshots {
     /// The rolling and the sliding spring of the right lower sphere on the ground were at their bounds, until
     /// the upper sphere had descended by R/10
     bool roll_saturates = false, slide_saturates = false;
-    SnapshotTables tables = {};
+    run::SnapshotTables tables = {};
 };
 
 /// Integrates with step h [s] until the time `end` [s], or until the upper sphere has descended by R/2. `run`

@@ -228,7 +228,7 @@ constexpr double pictured_gap = 0.3, added_mass = 0.01;  // over R; [kg]
 
 void add_snapshots(StudyContext& s, const std::vector<StackCell>& cells, double h, double end)
 {
-    std::vector<SnapshotTables> tables;
+    std::vector<run::SnapshotTables> tables;
     for (size_t k = 0; k < pictured.size(); ++k) {
         if (!cells[k].found) continue;
         Stack stack = cells[k].stack;
@@ -248,7 +248,7 @@ void add_snapshots(StudyContext& s, const std::vector<StackCell>& cells, double 
             tables.push_back(of.tables);
         }
     }
-    s.files = snapshot_files("", tables);
+    s.files = run::snapshot_files("", tables);
     if (!tables.empty()) s.figures.emplace_back("stacking-snapshots.png");
 }
 

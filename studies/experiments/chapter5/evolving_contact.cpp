@@ -109,7 +109,7 @@ struct BowlRun : RecordedRun<BowlVariant> {
 void compute(BowlRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
-    const EvolvingContact& contact = *evolving_contacts(model).front();
+    const EvolvingContact& contact = *run::evolving_contacts(model).front();
     const double initial_energy = lie::energy(model, run.c->started->x);
     const bool half_step_velocities = run.which_scheme() == 0;
     lie::State last;
@@ -166,7 +166,8 @@ double period(const BowlRun& run)
 void check_start(const Benchmark& c, const BowlVariant& v, std::vector<Criterion>& checks)
 {
     const dae::Model& model = *c.started->model;
-    const EvolvingContact::Multipliers start = forces(model, *evolving_contacts(model).front(), c.started->x);
+    const EvolvingContact::Multipliers start =
+        run::forces(model, *run::evolving_contacts(model).front(), c.started->x);
     if (!std::isnan(v.force_at_start))
         checks.push_back(criterion((v.rolls ? "friction at release [N], " : "F_N(0) [N], ") + v.name,
                                    v.rolls ? start.friction.norm() : start.F_N, v.force_at_start, 1e-11));

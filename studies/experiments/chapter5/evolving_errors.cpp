@@ -9,7 +9,7 @@
 namespace hilda::studies {
 
 ReferenceErrors::ReferenceErrors(const Benchmark& c, double h)
-    : c(c), model(*c.started->model), h(h), contacts(evolving_contacts(model))
+    : c(c), model(*c.started->model), h(h), contacts(run::evolving_contacts(model))
 {}
 
 void ReferenceErrors::accepted(const lie::State& x, long n, int)
@@ -28,8 +28,8 @@ void ReferenceErrors::accepted(const lie::State& x, long n, int)
     update_maximum(evolving_norm::A, d.A);
     update_maximum(evolving_norm::alpha, (x.alpha - reference_solution.alpha).norm());
     for (const contact::EvolvingContact* contact : contacts)
-        update_maximum(evolving_norm::F_N, std::abs(forces(model, *contact, x).F_N -
-                                                    forces(model, *contact, reference_solution).F_N));
+        update_maximum(evolving_norm::F_N, std::abs(run::forces(model, *contact, x).F_N -
+                                                    run::forces(model, *contact, reference_solution).F_N));
 }
 
 }  // namespace hilda::studies

@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "run/contact_rows.hpp"
 #include "studies/framework/run.hpp"
-#include "studies/running/contact_rows.hpp"
 
 #include <array>
 

@@ -12,9 +12,9 @@
 /// The step of the dissertation, 5e-3 s, is above 4.64e-3 s, the stability limit of the friction springs of a
 /// homogeneous ball. The default step is therefore 2.5e-3 s.
 
+#include "run/contact_outputs.hpp"
+#include "run/diagnosis.hpp"
 #include "studies/experiments/chapter5/recorded_run.hpp"
-#include "studies/running/contact_outputs.hpp"
-#include "studies/running/diagnosis.hpp"
 
 #include "dae/model.hpp"
 #include "reference/motions/planar_bowl.hpp"
@@ -115,10 +115,10 @@ void compare_with_reference(BrakedRun& run)
 void compute(BrakedRun& run, const StudyOptions& options)
 {
     const dae::Model& model = *run.c->started->model;
-    const ContactOutputs outputs(model);
-    const ContactOutputs::Contact& braked =
+    const run::ContactOutputs outputs(model);
+    const run::ContactOutputs::Contact& braked =
         *std::find_if(outputs.contacts.begin(), outputs.contacts.end(),
-                      [](const ContactOutputs::Contact& c) { return c.friction != nullptr; });
+                      [](const run::ContactOutputs::Contact& c) { return c.friction != nullptr; });
     const contact::EvolvingContact& contact = *braked.constraint;
     const contact::EvolvingFriction& friction = *braked.friction;
     run.bound = model.stable_step(run.c->started->x).h;
@@ -127,11 +127,12 @@ void compute(BrakedRun& run, const StudyOptions& options)
         const lie::Motion& ball = x.body[0];
         const contact::Wrench by = friction.friction(x);
         const lie::Vec3 p = lie::Vec3::Map(x.alpha.data() + 3);
-        run.curve.add({x.t, p.y(), p.z(), forces(model, contact, x).F_N, by.F.norm(), by.T_i.norm(),
+        run.curve.add({x.t, p.y(), p.z(), run::forces(model, contact, x).F_N, by.F.norm(), by.T_i.norm(),
                        ball.rdot.norm(), ball.omega_bar.norm()});
         if (run.variant->eta_r == 0 && x.t <= comparison_end) run.r.push_back(ball.r);
     });
-    const std::string name = fmt::format("{}-{}-{}", run.variant->name, run.scheme->name, step_text(run.h));
+    const std::string name =
+        fmt::format("{}-{}-{}", run.variant->name, run.scheme->name, run::step_text(run.h));
     march_with_frames(run, options, 1e-13, {&sampler}, name);  // below the errors in the table
     if (options.set.empty()) compare_with_reference(run);
 }
@@ -139,7 +140,8 @@ void compute(BrakedRun& run, const StudyOptions& options)
 void check_run(const BrakedRun& run, const BrakedRun* half, std::vector<Criterion>& list)
 {
     const BrakedVariant& v = *run.variant;
-    CriteriaOf checks{fmt::format(", {} by {} at {} s", v.name, run.scheme->name, step_text(run.h)), list};
+    CriteriaOf checks{fmt::format(", {} by {} at {} s", v.name, run.scheme->name, run::step_text(run.h)),
+                      list};
     const size_t scheme = run.which_scheme();
     if (v.eta_r == 0) {
         checks.equals("largest friction after 0.1 s [N]", run.max_friction(), 1.007, 5e-3);

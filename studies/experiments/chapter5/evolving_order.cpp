@@ -109,7 +109,7 @@ std::vector<Benchmark> selected_benchmarks(const StudyContext& s)
                                                 "rolling_ball_in_bowl_xy", "wobbling_ellipsoid"};
     for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
         all.push_back(make_benchmark(problem_or_file(name), options));
-        if (evolving_contacts(*all.back().started->model).empty())
+        if (run::evolving_contacts(*all.back().started->model).empty())
             s.refuse(name + " has no evolving contact, which this study needs");
     }
     return all;

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "dae/model_file.hpp"
+#include "run/frames/model_frames.hpp"
 #include "studies/framework/curve.hpp"
 #include "studies/framework/sweep.hpp"
-#include "studies/running/frames/model_frames.hpp"
 
 #include <optional>
 
@@ -51,15 +51,16 @@ template <class Variant>
 void march_with_frames(RecordedRun<Variant>& run, const StudyOptions& options, double tolerance,
                        std::vector<lie::Observer*> observers, const std::string& name)
 {
-    std::optional<ModelFrames> frames;
+    std::optional<run::ModelFrames> frames;
     if (options.vtk > 0 && !run.for_check) {
-        frames.emplace(*run.c->started->model, EvenSelection(options.vtk, std::lround(run.c->end / run.h)));
+        frames.emplace(*run.c->started->model,
+                       run::EvenSelection(options.vtk, std::lround(run.c->end / run.h)));
         observers.push_back(&*frames);
     }
     lie::Settings settings = options.settings;
     settings.tolerance = std::min(settings.tolerance, tolerance);
     march(run, settings, observers);
-    if (options.force && !options.output.empty()) Snapshots::remove(options.output, name);
+    if (options.force && !options.output.empty()) run::Snapshots::remove(options.output, name);
     if (frames) frames->snapshots.write(options.output, name);
 }
 

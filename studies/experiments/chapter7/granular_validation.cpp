@@ -7,9 +7,9 @@
 #include "io/error.hpp"
 #include "io/message.hpp"
 #include "io/progress.hpp"
+#include "run/provenance.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/framework/table.hpp"
-#include "studies/running/provenance.hpp"
 
 #include "granular/validations/validation.hpp"
 
@@ -90,7 +90,7 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
     options.full = study.options.grid == "full";
     options.warnings = &of_part;
     options.kept = kept_by(study, warnings, of_part);
-    options.beds = {.folder = folder_of_beds(study.options.output), .program = version_line()};
+    options.beds = {.folder = folder_of_beds(study.options.output), .program = run::version_line()};
     if (!study.options.quiet)
         options.announce = [&](const std::string& text) {
             io::message("hilda: study " + study.name + ": " + text + '\n');

@@ -13,14 +13,14 @@
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
+#include "run/invariants.hpp"
+#include "run/named_model.hpp"
+#include "run/output_columns.hpp"
+#include "run/provenance.hpp"
+#include "run/run_settings.hpp"
+#include "run/sink.hpp"
+#include "run/tables/run_table.hpp"
 #include "studies/experiments/sweep/swept_model.hpp"
-#include "studies/running/invariants.hpp"
-#include "studies/running/named_model.hpp"
-#include "studies/running/output_columns.hpp"
-#include "studies/running/provenance.hpp"
-#include "studies/running/run_settings.hpp"
-#include "studies/running/sink.hpp"
-#include "studies/running/tables/run_table.hpp"
 
 #include <fmt/format.h>
 
@@ -72,8 +72,8 @@ public:
     SweptNodes(SweptRun::Results& to, const Benchmark& c, const std::string& observable,
                const lie::TimeGrid& grid)
         : to(to), model(*c.started->model), grid(grid), body(model.find(c.observable.body)),
-          observed(model, c.started->outputs, "--observable", observable), contacts(evolving_contacts(model)),
-          C(model.pattern())
+          observed(model, c.started->outputs, "--observable", observable),
+          contacts(run::evolving_contacts(model)), C(model.pattern())
     {}
 
     void accepted(const lie::State& x, long n, int iterations) override
@@ -103,16 +103,16 @@ public:
         dae::check_dropped_rows(model, x);
     }
 
-    io::Sinks<RunSetup>* sinks = nullptr;
+    io::Sinks<run::RunSetup>* sinks = nullptr;
 
 private:
     SweptRun::Results& to;
     const dae::Model& model;
     const lie::TimeGrid& grid;
     const int body;
-    ObservedColumn observed;
+    run::ObservedColumn observed;
     const std::vector<const contact::EvolvingContact*> contacts;
-    Invariants invariants;
+    run::Invariants invariants;
     lie::Rows C;
     std::vector<dae::Reaction> reactions;
 };
@@ -127,7 +127,7 @@ void remove_kept(const StudyContext& s)
 {
     std::error_code error;
     for (long number = 1; fs::is_directory(folder_of(s, number), error); ++number) {
-        io::Sinks<RunSetup>::remove(folder_of(s, number));
+        io::Sinks<run::RunSetup>::remove(folder_of(s, number));
         fs::remove(folder_of(s, number) + "/model.json", error);
         fs::remove(folder_of(s, number), error);
     }
@@ -137,7 +137,7 @@ void remove_kept(const StudyContext& s)
 io::SinkOptions options_of_sinks(const StudyContext& s)
 {
     io::SinkOptions all;
-    if (!s.options.format.empty()) all[format_option] = s.options.format;
+    if (!s.options.format.empty()) all[run::format_option] = s.options.format;
     return all;
 }
 
@@ -146,23 +146,23 @@ void compute(SweptRun& run, const std::string& observable, const StudyContext& s
     const Benchmark& c = *run.c;
     const lie::TimeGrid grid = lie::TimeGrid::over(c.end, run.h, c.end / adaptive_rows);
     SweptNodes nodes(run.result, c, observable, grid);
-    std::optional<io::Sinks<RunSetup>> sinks;
+    std::optional<io::Sinks<run::RunSetup>> sinks;
     const std::string folder = folder_of(s, run.number);
     const io::SinkOptions sink_options = options_of_sinks(s);
     if (s.options.keep) {
-        sinks.emplace(RunSetup{.model = *c.started->model,
-                               .outputs = c.started->outputs,
-                               .model_name = c.problem.name,
-                               .grid = grid,
-                               .end = c.end,
-                               .directory = folder,
-                               .options = sink_options,
-                               .warn = [](const std::string&) {},
-                               .tables = run_tables(sink_options, folder,
-                                                    {{"program", version_line()},
-                                                     {"integrator", run.scheme->name},
-                                                     {"model", c.problem.name},
-                                                     {"model_text", c.started->text}})});
+        sinks.emplace(run::RunSetup{.model = *c.started->model,
+                                    .outputs = c.started->outputs,
+                                    .model_name = c.problem.name,
+                                    .grid = grid,
+                                    .end = c.end,
+                                    .directory = folder,
+                                    .options = sink_options,
+                                    .warn = [](const std::string&) {},
+                                    .tables = run::run_tables(sink_options, folder,
+                                                              {{"program", run::version_line()},
+                                                               {"integrator", run.scheme->name},
+                                                               {"model", c.problem.name},
+                                                               {"model_text", c.started->text}})});
         io::make_directory(folder);
         io::write_file(folder + "/model.json", c.started->text);
         sinks->open();
@@ -221,8 +221,8 @@ void sweep(StudyContext& s)
     if (s.options.keep && s.options.output.empty())
         s.refuse("--keep writes files: with --json it needs --output");
     if (!s.options.format.empty() && !s.options.keep) s.refuse("--format is for the motions of --keep");
-    run_tables(options_of_sinks(s), s.options.output,
-               {});  // before the first run, for a program without HDF5
+    run::run_tables(options_of_sinks(s), s.options.output,
+                    {});  // before the first run, for a program without HDF5
     const std::vector<SweptEntry> entries = swept_entries(s.options.sweep);
     if (entries.empty())
         s.refuse("needs --sweep /json/pointer=VALUE,VALUE,... or --sweep /json/pointer=A:B:N");
@@ -232,7 +232,7 @@ void sweep(StudyContext& s)
                 s.refuse("--set and --sweep change the same entry, " + entry.pointer);
     const std::string name = s.options.problems.empty() ? "double_pendulum" : s.options.problems.front();
     const SweptModel model(s.options, problem_or_file(name), entries);
-    const Schemes schemes = s.schemes({default_integrator});
+    const Schemes schemes = s.schemes({run::default_integrator});
     const std::vector<double> steps = s.steps({1e-3});
 
     // The models are read again when they run: a grid of large models would not fit into the memory.
@@ -250,8 +250,8 @@ void sweep(StudyContext& s)
         }
         if (!observable)
             observable =
-                ObservedColumn(*c.started->model, c.started->outputs, "study sweep: --observable",
-                               s.options.observable.empty() ? c.observable.name() : s.options.observable)
+                run::ObservedColumn(*c.started->model, c.started->outputs, "study sweep: --observable",
+                                    s.options.observable.empty() ? c.observable.name() : s.options.observable)
                     .column();
         check_steps(s.name, c, steps);
         if (observed_body.empty()) {  // of the columns rx to wz: that of the observable, else of the problem
@@ -288,7 +288,7 @@ void sweep(StudyContext& s)
 
     if (!observable) observable.emplace();  // no model has a consistent start
     const Columns<SweptRun> columns = columns_of(entries, *observable);
-    s.text << fmt::format("\n{}, {}; {} at the end, its least and largest value\n", short_name(name),
+    s.text << fmt::format("\n{}, {}; {} at the end, its least and largest value\n", run::short_name(name),
                           io::counted(static_cast<long>(runs.size()), "run"), observable->name);
     std::vector<std::string> shown = {"run"};
     for (const SweptEntry& entry : entries) shown.push_back(entry.pointer);
@@ -298,7 +298,7 @@ void sweep(StudyContext& s)
                                "constraint_norm", "max_force", "iterations_per_step", "status"})
         shown.emplace_back(column);
     columns.print(s.text, runs, shown);
-    s.json["model"] = short_name(name);
+    s.json["model"] = run::short_name(name);
     s.json["observable"] = observable->name;
     s.json["body"] = observed_body;
     s.json["observable_unit"] = observable->unit;

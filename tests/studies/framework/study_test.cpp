@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/studies/program.hpp"
-#include "tests/studies/refused.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/arguments.hpp"
 #include "io/error.hpp"
-#include "studies/running/diagnosis.hpp"
+#include "run/diagnosis.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hilda;
+using namespace hilda::run;
 using namespace hilda::studies;
 
 TEST_CASE("an option value must be a number as a whole", "[studies][arguments]")

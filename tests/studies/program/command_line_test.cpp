@@ -2,8 +2,8 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
-#include "tests/studies/program.hpp"
-#include "tests/studies/refused.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 

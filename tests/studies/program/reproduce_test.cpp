@@ -2,8 +2,8 @@
 #include "studies/program/reproduction.hpp"
 
 #include "studies/framework/study.hpp"
-#include "tests/studies/program.hpp"
-#include "tests/studies/refused.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/studies/refused.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 

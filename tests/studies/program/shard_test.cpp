@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda study --shard I/N and hilda collect.
-#include "tests/studies/csv.hpp"
 #include "tests/studies/program/divided_studies.hpp"
-#include "tests/studies/refused.hpp"
-#include "tests/studies/resumed_run.hpp"
+#include "tests/support/csv.hpp"
+#include "tests/support/refused.hpp"
+#include "tests/support/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

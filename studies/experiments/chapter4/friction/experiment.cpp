@@ -17,14 +17,14 @@ bool is_at_a_time(const std::vector<double>& times, long n, double h)
 
 }  // namespace
 
-void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
+void add_frame(run::Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies)
 {
-    std::vector<Snapshots::ContactData> contacts;
+    std::vector<run::Snapshots::ContactData> contacts;
     for (size_t k = 0; k < scene.pair.size(); ++k) {
         const contact::Scene::Pair& p = scene.pair[k];
         if (p.contact_state.N > 0)
-            contacts.push_back(Snapshots::contact_data(static_cast<int>(k), p.i, p.contact_state, p.wrench,
-                                                       p.history.deflections));
+            contacts.push_back(run::Snapshots::contact_data(static_cast<int>(k), p.i, p.contact_state,
+                                                            p.wrench, p.history.deflections));
     }
     to.add(scene.t, bodies, std::move(contacts));
 }
@@ -40,7 +40,7 @@ Curve simulate(const BodyOnPlane& setup, std::span<Frames> frames)
     if (!setup.above_stability_limit) scene.check(setup.h);
     Curve curve(setup.columns);
     const long steps = std::lround(setup.end / setup.h);
-    std::vector<EvenSelection> selections;
+    std::vector<run::EvenSelection> selections;
     for (Frames& of : frames) {
         selections.emplace_back(of.count, steps);
         of.snapshots.add_surface(body, scene.pair[0].contact.i);

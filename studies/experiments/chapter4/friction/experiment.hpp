@@ -6,8 +6,8 @@
 
 #include "contact/scenes/scene.hpp"
 #include "io/registry.hpp"
+#include "run/frames/vtk.hpp"
 #include "studies/framework/curve.hpp"
-#include "studies/running/frames/vtk.hpp"
 
 #include <functional>
 #include <span>
@@ -48,12 +48,12 @@ struct BodyOnPlane {
 struct Frames {
     int count = 0;
     std::vector<double> times = {};
-    Snapshots snapshots = {};
+    run::Snapshots snapshots = {};
 };
 
 /// Adds a frame at the time of the scene, with the contacts that have a normal force. `bodies`: the motions
 /// at this time; those of the scene may be a step later, as simulate() has them
-void add_frame(Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies);
+void add_frame(run::Snapshots& to, const contact::Scene& scene, const std::vector<contact::Motion>& bodies);
 
 /// Integrates with the step h to the end. The record of a node is made after the step from this node, which
 /// computes the contact loads at it. Snapshots are stored in each of `frames`.

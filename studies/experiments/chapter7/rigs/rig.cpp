@@ -5,8 +5,8 @@
 #include "io/files.hpp"
 #include "io/json_source.hpp"
 #include "io/message.hpp"
-#include "studies/cosim/run_case.hpp"
-#include "studies/cosim/run_cosim.hpp"
+#include "run/cosim/run_case.hpp"
+#include "run/cosim/run_cosim.hpp"
 #include "studies/framework/study_context.hpp"
 
 #include <fmt/format.h>
@@ -116,7 +116,7 @@ double Rigs::settle(const RigBed& bed)
                       {"until", {{"share", 1e-3}, {"from", 0.1}}},
                       {"on_timeout", "fail"}}};
     io::write_file(path + "/case.json", io::written(all) + '\n');
-    run_case(path + "/case.json", path + "/out");
+    run::run_case(path + "/case.json", path + "/out");
     const io::CsvTable grains = io::read_csv_table(path + "/out/particles.csv");
     const std::vector<double> z = grains.values("z");
     return *std::max_element(z.begin(), z.end()) + bed.R;
@@ -139,9 +139,9 @@ RigRun Rigs::run(const std::string& name, const RigBed& bed, const io::Json& mod
     io::write_file(path + "/case.json", io::written(all) + '\n');
     io::write_file(path + "/cosim.json", io::written(cosim) + '\n');
 
-    CosimOptions options{.file = path + "/cosim.json"};
+    run::CosimOptions options{.file = path + "/cosim.json"};
     options.run.output = path + "/out", options.run.force = options.run.quiet = true;
-    if (const int code = run_cosim(options); code != io::exit_code::done)
+    if (const int code = run::run_cosim(options); code != io::exit_code::done)
         throw io::Failure(code, "study " + study.name + ": the run " + name +
                                     " has not come to its end; see " + path + "/out/summary.json");
     RigRun result{.tools = io::read_csv_table(path + "/out/tools.csv")};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The convergence study. Two independent prototypes agree on the expected errors and iterations.
 
-#include "tests/studies/csv.hpp"
+#include "tests/support/csv.hpp"
 #include "tests/support/paths.hpp"
 
 #include <catch2/catch.hpp>

@@ -3,8 +3,8 @@
 #include "studies/framework/stopwatch.hpp"
 #include "studies/framework/work_needed.hpp"
 #include "studies/problems/n_pendulum.hpp"
-#include "tests/studies/adaptive_scheme.hpp"
-#include "tests/studies/csv.hpp"
+#include "tests/support/adaptive_scheme.hpp"
+#include "tests/support/csv.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

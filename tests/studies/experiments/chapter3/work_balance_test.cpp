@@ -13,7 +13,7 @@
 #include <cmath>
 
 using namespace hilda;
-using studies::NodeIntegral;
+using run::NodeIntegral;
 using studies::WorkBalance;
 
 namespace {

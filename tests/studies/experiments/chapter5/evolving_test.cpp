@@ -5,12 +5,12 @@
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
+#include "run/contact_rows.hpp"
+#include "run/invariants.hpp"
 #include "studies/problems/evolving_reference.hpp"
-#include "studies/running/contact_rows.hpp"
-#include "studies/running/invariants.hpp"
-#include "tests/studies/csv.hpp"
-#include "tests/studies/program.hpp"
-#include "tests/studies/refused.hpp"
+#include "tests/support/csv.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -193,10 +193,9 @@ TEST_CASE("the summary lists the impacts of a bouncing ball", "[studies][evolvin
 TEST_CASE("lambda_N above a millionth of the normal force means that the normals differ",
           "[studies][evolving]")
 {
-    CHECK(studies::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 1.1e-5}.normals_differ());
-    CHECK(studies::ContactExtremes{.F_N_least = -10, .F_N_most = 1, .lambda_N = 1.1e-5}.normals_differ());
-    CHECK_FALSE(
-        studies::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 0.9e-5}.normals_differ());
+    CHECK(run::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 1.1e-5}.normals_differ());
+    CHECK(run::ContactExtremes{.F_N_least = -10, .F_N_most = 1, .lambda_N = 1.1e-5}.normals_differ());
+    CHECK_FALSE(run::ContactExtremes{.F_N_least = 1, .F_N_most = 10, .lambda_N = 0.9e-5}.normals_differ());
 }
 
 TEST_CASE("the reference solution of a contact agrees with an integration with small steps",
@@ -216,7 +215,7 @@ TEST_CASE("the reference solution of a contact agrees with an integration with s
         CHECK((by_reference.body[0].A - by_steps.body[0].A).norm() < 1e-9);
         CHECK((by_reference.alpha - by_steps.alpha).norm() < 1e-9);
         const contact::EvolvingContact& c =
-            *studies::evolving_contacts(*d.model)[0];  // λ depends on the tangents
+            *run::evolving_contacts(*d.model)[0];  // λ depends on the tangents
         const auto from_reference = c.multipliers(d.model->arguments(c, by_reference), by_reference.lambda),
                    from_steps = c.multipliers(d.model->arguments(c, by_steps), by_steps.lambda);
         CHECK(from_reference.F_N == Approx(from_steps.F_N).epsilon(1e-8));

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/contact_outputs.hpp"
+
+#include "contact/internal_state.hpp"
+#include "dae/model.hpp"
+#include "run/state_columns.hpp"
+
+namespace hilda::run {
+
+namespace {
+
+using lie::Vec3;
+
+/// Tangential speed of body j relative to body i at the contact point [m/s]
+double slip_speed(const contact::ContactPoint& p, const lie::Motion& bi, const lie::Motion& bj)
+{
+    const Vec3 v = dae::velocity_at(bj, p.C_j - bj.r) - dae::velocity_at(bi, p.C_i - bi.r);
+    return (v - v.dot(p.n) * p.n).norm();
+}
+
+ContactOutput geometry(const contact::ContactPoint& p, const lie::Motion& bi, const lie::Motion& bj)
+{
+    return {.gap = p.gap, .C = p.C(), .n = p.n, .slip = slip_speed(p, bi, bj)};
+}
+
+void add_friction(const contact::TrackedForce& force, const contact::TrackedForce::Instant& now,
+                  const lie::State& x, ContactOutput& out)
+{
+    const contact::Wrench friction = force.friction(now, x);
+    out.F = friction.F, out.T = friction.T_i;
+    out.slipping = now.history.deflections.slide.slipping;
+    out.rolling = now.history.deflections.roll_i.slipping || now.history.deflections.roll_j.slipping;
+}
+
+ContactOutput of_force(const contact::ContactForce& force, const lie::State& x)
+{
+    const contact::ContactForce::Instant now = force.at(x);
+    ContactOutput out =
+        geometry(now.contact_state.contact_point, dae::motion(x, force.i), dae::motion(x, force.j));
+    if (!(now.contact_state.N > 0)) return out;
+    out.F_N = now.contact_state.N, out.is_touching = true;
+    add_friction(force, now, x, out);
+    return out;
+}
+
+class ContactColumns final : public ColumnGroup {
+public:
+    explicit ContactColumns(const dae::Model& model)
+        : ColumnGroup(columns_of(ContactOutputs(model))), outputs(model)
+    {}
+
+    void values(const lie::State& x, double* out) override
+    {
+        for (size_t k = 0; k < outputs.contacts.size(); ++k) {
+            const ContactOutput now = outputs.at(k, x);
+            *out++ = now.F_N, *out++ = now.gap;
+            for (const Vec3& v : {now.C, now.n, now.F, now.T})
+                for (const double component : v) *out++ = component;
+            *out++ = now.slip, *out++ = now.slipping, *out++ = now.rolling;
+        }
+    }
+
+private:
+    static std::vector<dae::Quantity> columns_of(const ContactOutputs& outputs)
+    {
+        std::vector<dae::Quantity> all;
+        for (const ContactOutputs::Contact& c : outputs.contacts) {
+            const auto add = [&](const char* name, const char* unit, const char* meaning) {
+                all.push_back({c.name + '.' + name, unit, meaning});
+            };
+            const auto vector = [&](const std::string& name, const char* unit, const char* meaning) {
+                for (const char* axis : {"x", "y", "z"}) add((name + axis).c_str(), unit, meaning);
+            };
+            add("F_N", "N", "normal force, positive in compression, 0 without contact");
+            add("gap", "m", "distance of the surfaces, negative for an overlap");
+            vector("C", "m", "contact point, global frame");
+            vector("n", "1", "unit normal, pointing into body i, global frame");
+            vector("Ff_", "N", "friction force on body i, global frame");
+            vector("Tf_", "N m", "friction torque on body i about the contact point, global frame");
+            add("slip", "m/s", "tangential speed of body j relative to body i at the contact point");
+            add("slipping", "1", "1 while the sliding friction is at its bound, else 0");
+            add("rolling", "1", "1 while the rolling friction is at its bound; 1 with ideal rolling");
+        }
+        return all;
+    }
+
+    const ContactOutputs outputs;
+};
+
+}  // namespace
+
+ContactOutputs::ContactOutputs(const dae::Model& model) : model(model)
+{
+    for (const auto& force : model.forces())
+        if (const auto* c = dynamic_cast<const contact::ContactForce*>(force.get());
+            c != nullptr && c->normal_constraint() == nullptr)
+            contacts.push_back({.name = c->name,
+                                .i = c->i,
+                                .j = c->j,
+                                .shape_i = c->contact.i,
+                                .shape_j = c->contact.j,
+                                .compliant = c});
+    for (const contact::EvolvingContact* c : evolving_contacts(model)) {
+        contacts.push_back({.name = c->name,
+                            .i = c->i,
+                            .j = c->j,
+                            .shape_i = c->shape_i,
+                            .shape_j = c->shape_j,
+                            .constraint = c});
+        for (const auto& force : model.forces()) {
+            const auto* tracked = dynamic_cast<const contact::TrackedForce*>(force.get());
+            if (tracked == nullptr || tracked->normal_constraint() != c) continue;
+            if (const auto* friction = dynamic_cast<const contact::EvolvingFriction*>(tracked))
+                contacts.back().friction = friction;
+            else
+                contacts.back().compliant = dynamic_cast<const contact::ContactForce*>(tracked);
+        }
+    }
+}
+
+ContactOutput ContactOutputs::at(size_t k, const lie::State& x) const
+{
+    const Contact& c = contacts[k];
+    if (c.compliant != nullptr && c.compliant->is_active(x)) return of_force(*c.compliant, x);
+    return of_constraint(c, x);
+}
+
+ContactOutput ContactOutputs::of_constraint(const Contact& c, const lie::State& x) const
+{
+    const contact::EvolvingContact& constraint = *c.constraint;
+    const dae::Constraint::Arguments at = model.arguments(constraint, x);
+    ContactOutput out = geometry(constraint.contact_point(at), at.bi, at.bj);
+    if (dae::Model::inactive(constraint, x)) return out;
+    const contact::EvolvingContact::Multipliers of = constraint.multipliers(at, x.lambda);
+    out.F_N = of.F_N, out.F = of.friction, out.is_touching = true;
+    out.rolling = constraint.friction == contact::EvolvingContact::Friction::rolling;
+    if (constraint.friction == contact::EvolvingContact::Friction::implicit) {
+        const auto state = contact::restored<contact::EvolvingContact::NodeState>(at.internal_state);
+        out.slipping = state.sliding.slipping != 0, out.rolling = state.rolling.slipping != 0;
+        if (of.resistance != Eigen::Vector2d::Zero()) {  // the rows of rolling resistance are a couple
+            derivatives.set_zero(constraint);
+            constraint.variation(at, derivatives);
+            const auto rows = (c.i == dae::ground ? derivatives.C_j : derivatives.C_i).block<2, 3>(9, 3);
+            const Vec3 couple = -rows.transpose() * of.resistance;
+            out.T = c.i == dae::ground ? Vec3(-at.bj.A * couple) : Vec3(at.bi.A * couple);
+        }
+    }
+    if (c.friction != nullptr) add_friction(*c.friction, c.friction->at(x), x, out);
+    return out;
+}
+
+std::unique_ptr<ColumnGroup> contact_columns(const dae::Model& model)
+{
+    return std::make_unique<ContactColumns>(model);
+}
+
+}  // namespace hilda::run

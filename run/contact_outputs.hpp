@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Forces and motion of the contacts of a model, for output.
+
+#pragma once
+
+#include "run/contact_rows.hpp"
+
+#include <string>
+#include <vector>
+
+namespace hilda::run {
+
+/// A contact at one instant. All vectors are in the global frame.
+struct ContactOutput {
+    double F_N = 0;                   ///< normal force [N]; positive in compression
+    double gap = 0;                   ///< distance of the surfaces [m], negative for an overlap
+    lie::Vec3 C = lie::Vec3::Zero();  ///< contact point [m]
+    lie::Vec3 n = lie::Vec3::Zero();  ///< unit normal, pointing into body i
+    lie::Vec3 F = lie::Vec3::Zero();  ///< friction force on body i [N]
+    lie::Vec3 T = lie::Vec3::Zero();  ///< friction torque on body i about C: rolling and spinning [N m]
+    double slip = 0;                  ///< tangential speed of body j relative to body i at C [m/s]
+    bool is_touching = false;         ///< the compliant contact has a normal force, the constraint is active
+    bool slipping = false;            ///< the sliding spring is at its bound
+    bool rolling = false;             ///< the rolling spring is at its bound; with ideal rolling always
+};
+
+/// The contacts of a model: compliant contacts, then contact constraints with their friction and fallback.
+/// The model must outlive this object.
+class ContactOutputs {
+public:
+    explicit ContactOutputs(const dae::Model& model);
+
+    struct Contact {
+        std::string name;
+        int i, j;  ///< bodies
+        contact::Shape shape_i, shape_j;
+
+        const contact::ContactForce* compliant = nullptr;  ///< the contact, or the fallback of the constraint
+        const contact::EvolvingContact* constraint = nullptr;
+        const contact::EvolvingFriction* friction = nullptr;  ///< of the constraint
+    };
+    std::vector<Contact> contacts;
+
+    /// Contact k in the state x. lie::NumericalFailure if the contact point is not found.
+    ContactOutput at(size_t k, const lie::State& x) const;
+
+private:
+    ContactOutput of_constraint(const Contact& c, const lie::State& x) const;
+
+    const dae::Model& model;
+    mutable dae::Constraint::Derivatives derivatives;
+};
+
+}  // namespace hilda::run

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The function that the program looks up in the module hilda-grains.so.
+#include "run/cosim/grains.hpp"
+
+#include "granular/backend/instruction_set.hpp"
+#include "granular/case/law_names.hpp"
+
+extern "C" const hilda::run::GrainFunctions* hilda_grain_functions()
+{
+    using namespace hilda;
+    static const run::GrainFunctions functions{
+        .run_cosim = run::run_cosim,
+        .check_cosim = run::check_cosim,
+        .law_names = [](const std::string& kind) { return granular::law_names(kind); },
+        .vector_instructions =
+            [] {
+                const granular::InstructionSet& set = granular::instruction_set();
+                return std::string(set.name) + " (" + set.description + ")";
+            }};
+    return &functions;
+}

@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/single_run.hpp"
+
+#include "contact/evolving/unilateral.hpp"
+#include "contact/soft_friction.hpp"
+#include "io/archive.hpp"
+#include "io/files.hpp"
+#include "io/json_source.hpp"
+#include "io/message.hpp"
+#include "io/option_values.hpp"
+#include "io/program.hpp"
+#include "io/provenance.hpp"
+#include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "lie/settings.hpp"
+#include "run/contact_rows.hpp"
+#include "run/coupling.hpp"
+#include "run/diagnosis.hpp"
+#include "run/figures.hpp"
+#include "run/named_model.hpp"
+#include "run/provenance.hpp"
+#include "run/tables/run_table.hpp"
+#include "run/watch/run_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace hilda::run {
+
+namespace {
+
+constexpr const char* interval_option = "--interval";
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+std::string event_name(contact::ContactEvent::Type type)
+{
+    using Type = contact::ContactEvent::Type;
+    return type == Type::lift_off  ? "lift-off"
+           : type == Type::impact  ? "impact"
+           : type == Type::closing ? "closing"
+                                   : "fallback";
+}
+
+}  // namespace
+
+SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory)
+    : Verbosity{options.quiet, options.verbose}, options(options), scheme(scheme),
+      directory(std::move(directory))
+{}
+
+RunResult SingleRun::execute()
+{
+    begin = Clock::now();
+    io::OutputLock lock(directory);
+    read();
+    lie::Settings integrator_settings = options.settings;
+    integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
+    const std::unique_ptr<lie::Integrator> integrator =
+        contact::make_integrator(*description.model, scheme, integrator_settings);
+    using Action = Watch::Action;
+    Watch watch(*description.model, description.x, *integrator, scheme, grid,
+                options.strict ? Action::strict : Action::stop, options.force);
+    const std::shared_ptr<RunTables> tables = run_tables(options.outputs, directory,
+                                                         {{"program", version_line()},
+                                                          {"command_line", options.command_line},
+                                                          {"integrator", scheme.name},
+                                                          {"model", description.name},
+                                                          {"model_text", text_of_model()}});
+    Recorder recorder({.model = *description.model,
+                       .outputs = description.outputs,
+                       .model_name = description.name,
+                       .grid = grid,
+                       .end = result.end,
+                       .directory = directory,
+                       .options = options.outputs,
+                       .warn = [this](const std::string& what) { warn(what); },
+                       .tables = tables,
+                       .coupling = options.coupling},
+                      *integrator, watch);
+    // A resumed run was checked when it started: an unstable step only gives a warning.
+    if (const std::string unstable =
+            check_run(*description.model, description.x, scheme, grid, options.force || from.has_value());
+        !unstable.empty())
+        warn(unstable);
+    if (!description.events.empty()) events = make_events(integrator_settings, *tables);
+    if (options.error)
+        refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
+                                                integrator_settings, grid);
+    lock.create();
+    if (!from) clear_directory();
+    remove_figure(directory, "trajectory.png");  // of the shorter run, if this one continues it
+    result.setup_seconds = seconds(Clock::now() - begin);
+    march(*integrator, recorder);
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
+        for (const contact::ContactEvent& e : unilateral->events())
+            if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
+                result.events.push_back(
+                    {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
+                     event_name(e.type), e.speed});
+    result.watch = watch.json();
+    for (const Finding& found : watch.findings())
+        if (!result.message.ends_with(found.text)) add_warning(found.text);  // not the one that ended the run
+    if (const std::string rank = rank_warning(*integrator); !rank.empty()) add_warning(rank);
+    if (refined) result.error = refined->estimate(result.events.size());
+    if (options.coupling != nullptr) options.coupling->close(result.exit_code);
+    finish(recorder);
+    return std::move(result);
+}
+
+/// io::UsageError if the run cannot have events
+std::unique_ptr<RunEvents> SingleRun::make_events(const lie::Settings& integrator_settings,
+                                                  RunTables& tables) const
+{
+    const auto refuse = [&](const std::string& why) {
+        throw io::UsageError("run: " + description.events.front().value->name_place + ": " + why);
+    };
+    if (options.coupling != nullptr) refuse("a co-simulation has no events");
+    if (options.error) refuse("--error is for models without events");
+    const auto make = [this, integrator_settings] {
+        return contact::make_integrator(*description.model, scheme, integrator_settings);
+    };
+    if (const std::string why = why_no_events(scheme, *make()); !why.empty()) refuse(why);
+    return std::make_unique<RunEvents>(description, make, tables);
+}
+
+void SingleRun::read()
+{
+    description = named_model(options.model, options.set, options.normal_rows);
+    if (options.resume) load_checkpoint();
+    if (options.coupling != nullptr) {
+        if (!from) {  // an invalid start is reported before the other side writes files
+            dae::Description alone = named_model(options.model, options.set, options.normal_rows);
+            dae::start(alone, {.fix_initial = options.fix_initial});
+        }
+        options.coupling->prepare(description, from ? std::optional(from->number) : std::nullopt);
+    }
+    result.start = dae::start(description, {.fix_initial = options.fix_initial});
+    result.end = options.end.value_or(from ? from->end : description.end);
+    std::optional<double> interval = options.interval;
+    if (!interval && from && scheme.adaptive)
+        interval = io::number_in<double>(from->settings[interval_option]);
+    grid = time_grid(scheme, result.end, options.step, interval);
+    if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
+    for (const std::string& warning : grid_warnings(grid, result.end, options.interval.value_or(0), scheme))
+        warn(warning);
+    for (std::string& w : contact::soft_friction_warnings(*description.model, description.x))
+        description.warnings.push_back(std::move(w));
+    for (const std::string& w : description.warnings) warn(w);
+    for (const std::string& row : result.start.dropped)
+        warn(row + ": redundant with the constraints before it, dropped from the equations");
+    log(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
+                    result.start.position_residual, result.start.velocity_residual,
+                    result.start.projected ? ", projected" : ""));
+
+    result.model = description.name;
+    result.integrator = scheme.name;
+    result.step = grid.h;
+    result.interval = static_cast<double>(grid.interval) * grid.h;
+    result.tolerance = options.settings.tolerance;
+    if (scheme.adaptive) {
+        result.rtol = options.settings.rtol;
+        result.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
+    }
+    result.bodies = description.model->bodies();
+    result.constraints = description.model->constraints();
+    for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
+        result.contacts.push_back(c->name);
+    result.warnings = description.warnings;
+    result.set = description.changes;
+    result.parameters = description.parameters;
+    result.command_line = options.command_line;
+    std::vector<std::string> files = options.inputs;
+    files.insert(files.end(), description.files.begin(), description.files.end());
+    result.inputs = io::inputs(files);
+    result.threads = 1;  // the number used, independent of --threads
+    result.directory = directory;
+    settings = settings_of_run();
+    if (from) check_continues();
+}
+
+RunSettings SingleRun::settings_of_run()
+{
+    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
+    const lie::Settings& s = options.settings;
+    RunSettings all = options.outputs;
+    if (const auto format = all.find(format_option); format != all.end() && format->second == default_format)
+        all.erase(format);
+    all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
+    all["--integrator"] = scheme.name;
+    if (scheme.adaptive) {
+        all["--rtol"] = io::shortest(result.rtol);
+        if (result.atol != result.rtol) all["--atol"] = io::shortest(result.atol);
+    } else {
+        all["--step"] = io::shortest(grid.h);
+    }
+    all[interval_option] = io::shortest(result.interval);
+    // Rows are counted in steps: with another step the rows of the interrupted run would have another
+    // interval.
+    if (from && !options.interval) all[interval_option] = from->settings[interval_option];
+    all["--tolerance"] = io::shortest(s.tolerance);
+    all["--linear-solver"] = solvers[static_cast<int>(s.linear_solver)];
+    all["--rho-infinity"] = io::shortest(s.rho_infinity);
+    if (s.reparametrise) all["--reparametrise"] = "";
+    if (options.fix_initial) all["--fix-initial"] = "";
+    if (!options.plugins.empty()) all["--load"] = fmt::format("{}", fmt::join(options.plugins, " --load "));
+    return all;
+}
+
+void SingleRun::load_checkpoint()
+{
+    std::error_code error;
+    const bool has_ended =
+        std::filesystem::exists(path("summary.json"), error) && !io::CheckpointFiles(directory).exist();
+    io::CheckpointFiles(directory).load([&](const std::string& bytes, const std::string& file) {
+        from = from_bytes(bytes, file);
+        from_file = file;
+    });
+    if (!from && has_ended)
+        throw RunHasEnded(directory + ": its run has ended without a checkpoint; --force starts it again");
+    if (!from) warn(directory + ": has no checkpoint; starting from the initial state");
+    extends = from && has_ended;
+}
+
+void SingleRun::check_continues() const
+{
+    if (from->settings != settings) {
+        std::error_code error;
+        const std::string file = path("model.json");
+        throw io::UsageError(fmt::format(
+            "{}: the checkpoint belongs to another run: {}; --force starts it again", directory,
+            difference(
+                from->settings, settings,
+                std::filesystem::exists(file, error) ? io::read_file(file, io::JsonSource::max_bytes) : "",
+                text_of_model())));
+    }
+    check_fits(*from, *description.model, description.x, from_file);
+    const bool same_end = lie::TimeGrid::over(from->end, grid.h).steps == grid.steps;
+    if (extends && same_end)
+        throw RunHasEnded(
+            fmt::format("{}: its run is complete, with the end {} s; --end with a later time extends it, "
+                        "--force starts it again",
+                        directory, from->end));
+    if (grid.steps < from->number || (grid.steps == from->number && !same_end))
+        throw io::UsageError(
+            fmt::format("run: --end must be after t = {} s, which the run in {} has reached, "
+                        "got {}; --force starts it again",
+                        from->node.t, directory, result.end));
+}
+
+// Removes the files of an earlier run, so that they cannot be taken for those of this run.
+void SingleRun::clear_directory() const
+{
+    io::CheckpointFiles(directory).remove();
+    io::Sinks<RunSetup>::remove(directory);
+    for (const char* file : {"summary.json", "events.csv"}) std::remove(path(file).c_str());
+    io::write_file(path("model.json"), text_of_model());
+}
+
+std::string SingleRun::text_of_model() const
+{
+    return result.start.projected ? dae::text_at(description, description.x) : description.text;
+}
+
+void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
+{
+    lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
+                            : lie::March(description.x, integrator, grid.h);
+    if (from) {
+        earlier_seconds = from->wall_seconds;
+        result.resumed_at = from->number;
+    }
+    recorder.open(from);
+    if (events) {
+        const bool continues = from && from->sinks.contains("events");
+        events->open(continues ? from->sinks.at("events") : "", from_file);
+    }
+    if (options.coupling != nullptr)
+        options.coupling->begin(march, [this](const std::string& what) { add_warning(what); });
+    begin = Clock::now();
+    // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed
+    // at any time.
+    if (extends) std::remove(path("summary.json").c_str());
+    if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(march, recorder);
+    advance(march, integrator, recorder);
+    last_node = march.node().t;
+    result.invariants = recorder.invariants;
+    recorder.close();
+    if (events) {
+        events->close();
+        result.located = events->counts();
+        if (const std::string fault = events->fault(); !fault.empty() && result.status == "ok") {
+            result.status = "event_not_finite", result.message = fault;
+            result.exit_code = io::exit_code::numerical_failure;
+            io::message("hilda: error[" + result.status + "]: " + fault + '\n');
+        }
+    }
+    check_contacts();
+    constexpr double largest_residual = 1e-5;  // [m or rad]
+    if (description.model->keeps_redundant_rows() && result.invariants.constraint_norm > largest_residual)
+        add_warning(
+            fmt::format("the constraints with redundant rows are violated by up to {:.1e} m or rad; "
+                        "reduce the step",
+                        result.invariants.constraint_norm));
+}
+
+void SingleRun::add_warning(const std::string& what)
+{
+    warn(what);
+    result.warnings.push_back(what);
+}
+
+// Warnings: λ_N ≠ 0 if a surface returns normals that are not those of its points; F_N < 0 in a bilateral
+// contact means that bodies free to separate would have separated.
+void SingleRun::check_contacts()
+{
+    const auto contacts = evolving_contacts(*description.model);
+    for (size_t k = 0; k < result.contacts.size(); ++k) {
+        const ContactExtremes& c = result.invariants.contact[k];
+        if (c.normals_differ() && c.lambda_N > ContactExtremes::rounding(*description.model))
+            add_warning(fmt::format(
+                "contact '{}': lambda_N reaches {:.1e} N at a normal force of {:.1e} N: the normals of its "
+                "surfaces do not belong to their contact points",
+                result.contacts[k], c.lambda_N, std::max(std::abs(c.F_N_least), c.F_N_most)));
+        if (!contacts[k]->unilateral.enabled &&
+            c.F_N_least < -ContactExtremes::rounding(*description.model) &&
+            c.F_N_least < -1e-9 * std::abs(c.F_N_most))
+            add_warning(
+                fmt::format("contact '{}': the normal force is tensile, up to {:.3g} N; "
+                            "with \"unilateral\": true the bodies would separate",
+                            result.contacts[k], -c.F_N_least));
+    }
+}
+
+void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
+{
+    std::vector<lie::Observer*> observers = recorder.observers();
+    if (events) observers.insert(observers.begin(), events.get());
+    if (refined) observers.push_back(refined.get());
+    Progress line(options.quiet, result.end, grid.steps, march.number());
+    const bool watch_clock = line.shown() || options.checkpoint > 0;
+    Clock::time_point saved = Clock::now();
+    const auto advance_once = [&] {
+        try {
+            if (options.coupling != nullptr) options.coupling->before_step(march);
+            march.advance(observers);
+            return true;
+        } catch (const lie::Interrupted&) {  // during a step; the current node is unchanged
+            return false;
+        }
+    };
+    try {
+        while (march.number() < grid.steps && io::Interrupt::caught() == 0 && advance_once()) {
+            if (!watch_clock) continue;
+            const Clock::time_point now = Clock::now();
+            line.update(now, march.node().t, march.number(), integrator.statistics());
+            if (options.checkpoint > 0 && seconds(now - saved) >= options.checkpoint) {
+                save_checkpoint(march, recorder);
+                saved = Clock::now();
+            }
+        }
+        count(march, recorder);  // before the additional step of finish(), which is not a step of the run
+        line.clear();
+        if (march.number() == grid.steps) {
+            if (scheme.resumes) final_checkpoint = checkpoint(march, recorder);
+            if (options.coupling != nullptr) {
+                // The two sides end one after the other. A run that is killed in between continues from here.
+                save_checkpoint(march, recorder);
+                options.coupling->before_finish();
+            }
+            return march.finish(observers);
+        }
+        result.status = "interrupted";
+        result.exit_code = io::exit_code::signal + io::Interrupt::caught();
+        if (scheme.resumes) save_checkpoint(march, recorder);
+        if (!options.quiet)
+            io::message(!scheme.resumes ? "hilda: interrupted\n"
+                                        : "hilda: interrupted; --resume continues from the checkpoint in " +
+                                              directory + '\n');
+    } catch (const StoppedByEvent& stop) {
+        line.clear();
+        end_at(stop, march, recorder);
+    } catch (const lie::NumericalFailure& failure) {
+        count(march, recorder);
+        line.clear();
+        // The start node of the failed step is the last valid node, and may be an output row. The status
+        // stays that of the step if a check of this node fails as well. The run is complete if it ends at an
+        // event before this node.
+        if (recorder.last_node() != march.number()) try {
+                march.finish(observers);
+            } catch (const StoppedByEvent& stop) {
+                return end_at(stop, march, recorder);
+            } catch (const lie::NumericalFailure&) {
+            }
+        failed(failure, march);
+    }
+}
+
+/// The state at the event becomes the last row.
+void SingleRun::end_at(const StoppedByEvent& stop, const lie::March& march, Recorder& recorder)
+{
+    count(march, recorder);
+    result.t = stop.x.t;
+    result.stopped_by = stop.event;
+    grid.steps = march.number();
+    try {
+        recorder.accepted(stop.x, march.number(), march.iterations_of_last_step());
+    } catch (const lie::NodeFailure& failure) {
+        failed(failure, march);
+    }
+}
+
+std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) const
+{
+    Checkpoint c = recorder.checkpoint(march);
+    if (events) c.sinks["events"] = events->save();
+    c.settings = settings;
+    c.end = result.end;
+    c.interval = grid.interval;
+    c.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
+    return to_bytes(std::move(c));
+}
+
+void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+{
+    if (options.coupling != nullptr) options.coupling->save();
+    io::CheckpointFiles(directory).save(checkpoint(march, recorder));
+    log(fmt::format("checkpoint at step {}", march.number()));
+}
+
+void SingleRun::count(const lie::March& march, const Recorder& recorder)
+{
+    result.statistics = recorder.statistics();
+    result.t = march.node().t;
+    result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
+}
+
+void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
+{
+    const Diagnosis d = diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme);
+    result.status = failure.status;
+    result.exit_code = io::exit_code::numerical_failure;
+    result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
+    io::message("hilda: error[" + failure.status + "]: " + d.what + '\n');
+    if (!d.detail.empty()) io::message("  " + d.detail + '\n');
+}
+
+void SingleRun::finish(const Recorder& recorder)
+{
+    result.files = recorder.files();
+    result.files.insert(result.files.begin(), "model.json");
+    if (events)
+        for (const std::string& file : events->files()) result.files.push_back(file);
+    result.files.emplace_back("summary.json");
+    const bool ok = result.status == "ok";
+    // In this order, so that a run that is killed here can be resumed.
+    if (ok && !final_checkpoint.empty()) io::CheckpointFiles(directory).save_final(final_checkpoint);
+    if (result.status == "interrupted" && scheme.resumes) result.files.emplace_back("checkpoint");
+    if (options.plot && options.draw)
+        for (const std::string& file : options.draw("trajectory.py", directory, options.figure_formats))
+            result.files.push_back(file);
+    io::write_file(path("summary.json"), summary(result).text());
+    if (ok) io::CheckpointFiles(directory).remove_unfinished();
+}
+
+}  // namespace hilda::run

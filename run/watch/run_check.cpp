@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/watch/run_check.hpp"
+
+#include "dae/model.hpp"
+#include "io/error.hpp"
+#include "lie/schemes.hpp"
+#include "run/run_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace hilda::run {
+
+namespace {
+
+/// Four digits, rounded down, so that the printed step satisfies the limit
+std::string rounded_down(double positive)
+{
+    const double unit = std::pow(10.0, std::floor(std::log10(positive)) - 3);
+    return fmt::format("{:.4g}", std::floor(positive / unit) * unit);
+}
+
+}  // namespace
+
+void check_step_options(const lie::Scheme& scheme, const std::vector<std::string>& settings, bool has_step,
+                        std::optional<double> interval)
+{
+    const auto refuse = [&](const std::string& why) {
+        throw io::UsageError("run: " + scheme.name + " " + why);
+    };
+    for (const std::string& option : settings)
+        if (has_step && scheme.adaptive_form && (option == "--rtol" || option == "--atol"))
+            refuse("has a fixed step with --step, and adaptive steps with " + option + "; give one of them");
+    if (!scheme.adaptive) return;
+    if (has_step) refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");
+    if (interval && *interval == 0) refuse("chooses its own steps; --interval must be positive, got 0");
+}
+
+lie::TimeGrid time_grid(const lie::Scheme& scheme, double end, std::optional<double> step,
+                        std::optional<double> interval)
+{
+    const double spacing = interval.value_or(end / 1000);
+    try {
+        if (scheme.adaptive)
+            return lie::TimeGrid::over(end, interval || spacing > 0 ? spacing : default_step);
+        return lie::TimeGrid::over(end, step.value_or(default_step), spacing);
+    } catch (const lie::InvalidInput& error) {
+        throw io::UsageError(error.what());
+    }
+}
+
+std::vector<std::string> grid_warnings(const lie::TimeGrid& grid, double end, double interval,
+                                       const lie::Scheme& scheme)
+{
+    std::vector<std::string> warnings;
+    const double reached = static_cast<double>(grid.steps) * grid.h,
+                 spacing = static_cast<double>(grid.interval) * grid.h;
+    if (reached > end * (1 + 1e-9))
+        warnings.push_back(fmt::format("the end {} s is not a multiple of {}: the run ends at {:.12g} s", end,
+                                       scheme.adaptive ? "--interval" : "the step", reached));
+    if (interval > 0 && spacing > interval * (1 + 1e-9))
+        warnings.push_back(fmt::format(
+            "--interval {} is not a multiple of the step: rows are {:.12g} s apart", interval, spacing));
+    return warnings;
+}
+
+std::string check_run(const dae::Model& model, const lie::State& start, const lie::Scheme& scheme,
+                      const lie::TimeGrid& grid, bool accept_unstable)
+{
+    const double end = static_cast<double>(grid.steps) * grid.h;
+    if (const dae::Model::MotionEnd motion = model.motion_end(); motion.t < end * (1 - 1e-12))
+        throw io::UsageError(
+            fmt::format("run: --end must be at most {} s, the last sample of the motion of '{}', got {}",
+                        motion.t, model.constraint_name(motion.constraint), end));
+    for (const auto& force : model.forces())
+        if (!scheme.histories && force->internal_states() > 0)
+            throw io::UsageError(
+                scheme.adaptive
+                    ? fmt::format(
+                          "run: {} chooses its own steps; {} has internal state variables and needs a "
+                          "fixed-step scheme{}",
+                          scheme.name, force->label(), scheme.resumes ? " or --step" : "")
+                    : fmt::format(
+                          "run: {} does not take loads with a history; {} has internal state variables",
+                          scheme.name, force->label()));
+    if (scheme.adaptive) return "";
+    const dae::Model::StableStep stable = model.stable_step(start, scheme);
+    if (!(grid.h > stable.h)) return "";
+    const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];
+    std::string what =
+        fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
+                    rounded_down(stable.h), force.label());
+    if (!accept_unstable)
+        throw io::UsageError("run: " + what +
+                             (force.may_be_implicit() && scheme.implicit_springs
+                                  ? "; \"implicit\": true in this force removes this limit"
+                                  : "") +
+                             "; --force accepts it");
+    return what;
+}
+
+}  // namespace hilda::run

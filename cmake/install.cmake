@@ -112,6 +112,7 @@ function(hilda_install_headers)
         install(FILES "${PROJECT_SOURCE_DIR}/${file}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/${folder}")
     endforeach()
 endfunction()
+file(GLOB cosim_headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/run/cosim/*.hpp")
 hilda_install_headers(
     FOLDERS io lie dae contact reference run studies/framework studies/problems granular/force_models
     FILES granular/backend/any_of.hpp granular/backend/cube_root.hpp granular/backend/engine.hpp granular/backend/finite_state.hpp
@@ -126,8 +127,8 @@ hilda_install_headers(
         granular/core/surfaces/surfaces.hpp granular/core/surfaces/triangle_mesh.hpp granular/core/watch.hpp
         granular/mesh/mesh_file.hpp granular/mesh/mesh_shapes.hpp
         granular/world/boundary_drawing.hpp granular/world/double_world.hpp granular/world/output.hpp granular/world/watch.hpp granular/world/world.hpp
-    # parts of the solvers, and what includes headers of GSL
-    EXCEPT lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
+    # parts of the solvers, what includes headers of GSL, and co-simulation, which needs the cases of granular
+    EXCEPT ${cosim_headers} lie/solver/condensed.hpp lie/solver/elimination.hpp reference/solvers/gsl_errors.hpp)
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
     DESTINATION "${hilda_package_dir}")

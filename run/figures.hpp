@@ -12,8 +12,8 @@ namespace hilda::run {
 /// Formats of figures: those that matplotlib writes without further programs
 const std::vector<std::string>& figure_formats();
 
-/// Draws the results in a directory with a script, for example "convergence.py", in these formats (none: png).
-/// Returns the names of the files, none if nothing could be drawn.
+/// Draws the results in a directory with a script, for example "convergence.py", in these formats (none:
+/// png). Returns the names of the files, none if nothing could be drawn.
 using DrawFigures = std::function<std::vector<std::string>(
     const std::string& script, const std::string& directory, const std::vector<std::string>& formats)>;
 

@@ -6,7 +6,7 @@
 #include "io/sink.hpp"
 #include "lie/settings.hpp"
 #include "run/figures.hpp"
-#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
 
 #include <optional>
 #include <string>

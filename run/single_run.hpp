@@ -8,10 +8,10 @@
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
-#include "run/checkpoint.hpp"
 #include "run/events/run_events.hpp"
 #include "run/progress.hpp"
-#include "run/recorder.hpp"
+#include "run/recording/checkpoint.hpp"
+#include "run/recording/recorder.hpp"
 #include "run/run_options.hpp"
 #include "run/summary.hpp"
 

@@ -6,8 +6,9 @@
 #include "dae/start.hpp"
 #include "io/json.hpp"
 #include "lie/statistics.hpp"
+#include "run/columns/invariants.hpp"
 #include "run/error_estimate.hpp"
-#include "run/invariants.hpp"
+#include "run/events/run_events.hpp"
 
 #include <iosfwd>
 #include <optional>
@@ -15,13 +16,6 @@
 #include <vector>
 
 namespace hilda::run {
-
-/// What a run reports about an event of the model file
-struct EventCount {
-    std::string name;
-    long count = 0;
-    double last = 0;  ///< time of the last one [s]
-};
 
 struct RunResult {
     std::string status = "ok", message;

@@ -38,13 +38,14 @@ const std::map<std::string, std::set<std::string>> allowed_rooms = {
     {"tests", {"io", "lie", "dae", "contact", "granular", "reference", "run", "studies"}},
 };
 
-/// The folders of granular that each of them may include, besides itself. A folder stands for its subfolders
-/// as well.
-///
+/// Folders of a room, and those that each of them may include, besides itself. A folder stands for its
+/// subfolders as well; "" are the files of the room itself.
+using FolderOrder = std::map<std::string, std::set<std::string>>;
+
 /// backend and core include each other: core computes with the numbers and parallel loops of backend, and the
 /// engines in backend are the loops over the particles of core. The laws in force_models include core, and
 /// core has them by the generated header granular/force_models.hpp.
-const std::map<std::string, std::set<std::string>> granular_folders = {
+const FolderOrder granular_folders = {
     {"backend", {"core"}},
     {"core", {"backend"}},
     {"force_models", {"backend", "core"}},
@@ -66,6 +67,34 @@ const std::map<std::string, std::set<std::string>> granular_folders = {
     {"benchmarks", {"cosim", "mesh", "running", "world"}},
 };
 const std::pair<std::string, std::string> mutual_folders = {"backend", "core"};
+
+const FolderOrder run_folders = {
+    {"jobs", {}},
+    {"tables", {}},
+    {"columns", {"tables"}},
+    {"frames", {"columns"}},
+    {"watch", {}},
+    {"recording", {"columns", "tables", "watch"}},
+    {"sinks", {"columns", "frames", "recording", "tables"}},
+    {"events", {"columns", "recording", "tables"}},
+    {"", {"columns", "events", "recording", "tables", "watch"}},
+    {"importing", {""}},
+    {"kinematics", {"", "columns", "tables"}},
+    {"fitting", {"columns", "jobs", "watch"}},
+    {"cosim", {"", "recording", "watch"}},
+};
+
+const FolderOrder studies_folders = {
+    {"framework", {}},
+    {"problems", {"framework"}},
+    {"experiments", {"framework", "problems"}},
+    {"benchmarks", {"experiments", "framework"}},
+    {"program", {"framework", "problems"}},
+};
+
+/// The rooms whose folders have an order
+const std::map<std::string, FolderOrder> ordered_rooms = {
+    {"granular", granular_folders}, {"run", run_folders}, {"studies", studies_folders}};
 
 /// The folders of each room, relative to it; "" is the room itself.
 const std::map<std::string, std::set<std::string>> folders = {
@@ -107,8 +136,8 @@ const std::map<std::string, std::set<std::string>> folders = {
       "world"}},
     {"reference", {"", "formulations", "integrators", "motions", "solvers"}},
     {"run",
-     {"", "cosim", "events", "fitting", "frames", "importing", "jobs", "kinematics", "sinks", "tables",
-      "watch"}},
+     {"", "columns", "cosim", "events", "fitting", "frames", "importing", "jobs", "kinematics", "recording",
+      "sinks", "tables", "watch"}},
     {"studies",
      {"", "benchmarks", "experiments", "experiments/chapter3", "experiments/chapter4",
       "experiments/chapter4/friction", "experiments/chapter5", "experiments/chapter7",
@@ -131,21 +160,24 @@ const std::map<std::string, std::set<std::string>> forbidden_libraries = {
     {"granular", {"gsl", "Eigen", "nlohmann", "ida", "nvector", "sundials", "sunmatrix", "sunlinsol"}},
 };
 
-/// The folder of granular that contains a file; empty for files of granular itself, such as generated headers
-std::string granular_folder(const std::string& path)
+/// The folder of its room that contains a file; "" for the files of the room itself, such as generated
+/// headers
+std::string folder_of(const std::string& path)
 {
-    const std::size_t begin = std::string("granular/").size(), end = path.find('/', begin);
+    const std::size_t begin = path.find('/') + 1, end = path.find('/', begin);
     return end == std::string::npos ? "" : path.substr(begin, end - begin);
 }
 
-/// The reason why `file` must not include `header` (both in granular); empty if it may.
-std::string granular_include_error(const std::string& file, const std::string& header)
+/// The reason why `file` must not include `header`, both in one room; empty if it may.
+std::string order_error(const std::string& room, const std::string& file, const std::string& header)
 {
-    const std::string from = granular_folder(file), to = granular_folder(header);
-    if (to.empty() || from == to) return "";
-    const auto allowed = granular_folders.find(from);
-    if (allowed != granular_folders.end() && allowed->second.count(to) == 1) return "";
-    return "granular/" + from + " must not include granular/" + to;
+    const auto order = ordered_rooms.find(room);
+    const std::string from = folder_of(file), to = folder_of(header);
+    if (order == ordered_rooms.end() || from == to || (room == "granular" && to.empty())) return "";
+    const auto allowed = order->second.find(from);
+    if (allowed != order->second.end() && allowed->second.count(to) == 1) return "";
+    const auto name = [&](const std::string& folder) { return folder.empty() ? room : room + "/" + folder; };
+    return name(from) + " must not include " + name(to);
 }
 
 /// The reason why `file` must not include `header` (both relative to the root of the tree); empty if it may.
@@ -158,16 +190,14 @@ std::string include_error(const std::string& file, const std::string& header)
     if (const auto out = forbidden_libraries.find(room);
         out != forbidden_libraries.end() && out->second.count(other) != 0)
         return room + " must not include " + other;
-    if (file.starts_with("studies/framework/") && header.starts_with("studies/program/"))
-        return "studies/framework must not include studies/program";
     // The module of grains may link the CUDA runtime, the other one links GSL.
     if (file.starts_with("python/granular_bindings/") && rooms.count(other) != 0 && other != "io" &&
         other != "granular" && other != "python")
         return "python/granular_bindings must not include " + other;
     if (file.starts_with("python/bindings/") && other == "granular")
         return "python/bindings must not include granular";
-    if (room == "granular" && other == "granular") return granular_include_error(file, header);
-    if (rooms.count(other) == 0 || other == room) return "";
+    if (room == other) return order_error(room, file, header);
+    if (rooms.count(other) == 0) return "";
     if (room == "tests" && other == "studies" && header.ends_with(".cpp"))
         return "is a source file of studies, not a header";
     if (allowed_rooms.at(room).count(other) == 0) return room + " must not include " + other;
@@ -226,6 +256,11 @@ TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
           "studies must not include tests");
     CHECK(include_error("studies/framework/study.hpp", "studies/program/arguments.hpp") ==
           "studies/framework must not include studies/program");
+    CHECK(include_error("contact/surface.hpp", "run/recording/recorder.hpp") ==
+          "contact must not include run");
+    CHECK(include_error("run/watch/watch.cpp", "run/single_run.hpp") == "run/watch must not include run");
+    CHECK(include_error("run/single_run.cpp", "run/cosim/run_cosim.hpp") == "run must not include run/cosim");
+    CHECK(include_error("run/single_run.cpp", "run/watch/watch.hpp") == "");
     CHECK(include_error("tests/lie/so3_test.cpp", "studies/program/main.cpp") ==
           "is a source file of studies, not a header");
     CHECK(include_error("dae/start.cpp", "gsl/gsl_odeiv2.h") == "dae must not include gsl");
@@ -256,25 +291,29 @@ TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
     CHECK(include_error("reference/solvers/ida_solver.cpp", "ida/ida.h") == "");
 }
 
-TEST_CASE("the folders of granular that a folder may include do not include it", "[house]")
+TEST_CASE("the folders of a room that a folder may include do not include it", "[house]")
 {
-    std::map<std::string, std::set<std::string>> open = granular_folders;
-    REQUIRE(open.at(mutual_folders.first).erase(mutual_folders.second) == 1);
-    REQUIRE(open.at(mutual_folders.second).count(mutual_folders.first) == 1);
-    // Removes a folder all of whose folders are removed, until there is none.
-    const auto is_lowest = [&](const auto& folder) {
-        return std::none_of(folder.second.begin(), folder.second.end(),
-                            [&](const std::string& lower) { return open.count(lower) == 1; });
-    };
-    for (auto at = std::find_if(open.begin(), open.end(), is_lowest); at != open.end();
-         at = std::find_if(open.begin(), open.end(), is_lowest))
-        open.erase(at);
-    for (const auto& [folder, lower] : open)
-        FAIL_CHECK("granular/" << folder << " is in a cycle or above one");
-    for (const auto& [folder, lower] : granular_folders) {
-        INFO("granular/" << folder);
-        CHECK(folders.at("granular").count(folder) == 1);
-        for (const std::string& other : lower) CHECK(granular_folders.count(other) == 1);
+    for (const auto& [room, order] : ordered_rooms) {
+        FolderOrder open = order;
+        if (room == "granular") {
+            REQUIRE(open.at(mutual_folders.first).erase(mutual_folders.second) == 1);
+            REQUIRE(open.at(mutual_folders.second).count(mutual_folders.first) == 1);
+        }
+        // Removes a folder all of whose folders are removed, until there is none.
+        const auto is_lowest = [&](const auto& folder) {
+            return std::none_of(folder.second.begin(), folder.second.end(),
+                                [&](const std::string& lower) { return open.count(lower) == 1; });
+        };
+        for (auto at = std::find_if(open.begin(), open.end(), is_lowest); at != open.end();
+             at = std::find_if(open.begin(), open.end(), is_lowest))
+            open.erase(at);
+        for (const auto& [folder, lower] : open)
+            FAIL_CHECK(room << "/" << folder << " is in a cycle or above one");
+        for (const auto& [folder, lower] : order) {
+            INFO(room << "/" << folder);
+            CHECK(folders.at(room).count(folder) == 1);
+            for (const std::string& other : lower) CHECK(order.count(other) == 1);
+        }
     }
 }
 

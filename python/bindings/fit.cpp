@@ -6,7 +6,7 @@
 #include "python/bindings/settings.hpp"
 #include "run/fitting/fit.hpp"
 #include "run/named_model.hpp"
-#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
 
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>

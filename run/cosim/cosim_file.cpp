@@ -5,7 +5,7 @@
 #include "io/files.hpp"
 #include "io/object_reader.hpp"
 #include "run/named_model.hpp"
-#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
 
 #include <filesystem>
 

@@ -7,7 +7,7 @@
 #include "run/cosim/cosim_file.hpp"
 #include "run/cosim/coupled_wrench.hpp"
 #include "run/cosim/effective_mass.hpp"
-#include "run/coupling.hpp"
+#include "run/recording/coupling.hpp"
 
 #include <memory>
 

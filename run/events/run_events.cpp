@@ -5,7 +5,7 @@
 #include "io/archive.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
-#include "run/checkpoint.hpp"
+#include "run/recording/checkpoint.hpp"
 
 namespace hilda::run {
 

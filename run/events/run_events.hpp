@@ -6,8 +6,7 @@
 #include "dae/model_file.hpp"
 #include "lie/events.hpp"
 #include "lie/trajectory.hpp"
-#include "run/output_columns.hpp"
-#include "run/summary.hpp"
+#include "run/columns/output_columns.hpp"
 #include "run/tables/run_table.hpp"
 
 #include <memory>
@@ -20,6 +19,13 @@ struct Scheme;
 }
 
 namespace hilda::run {
+
+/// What a run reports about an event of the model file
+struct EventCount {
+    std::string name;
+    long count = 0;
+    double last = 0;  ///< time of the last one [s]
+};
 
 /// Thrown by RunEvents::accepted(): an event with the action stop was found before this node.
 struct StoppedByEvent {

@@ -8,8 +8,8 @@
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "reference/solvers/least_squares.hpp"
+#include "run/columns/output_columns.hpp"
 #include "run/jobs/pool.hpp"
-#include "run/output_columns.hpp"
 
 #include <Eigen/SVD>
 

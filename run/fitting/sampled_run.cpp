@@ -6,7 +6,7 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
-#include "run/output_columns.hpp"
+#include "run/columns/output_columns.hpp"
 #include "run/watch/run_check.hpp"
 #include "run/watch/watch.hpp"
 

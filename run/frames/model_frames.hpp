@@ -4,7 +4,7 @@
 #pragma once
 
 #include "lie/trajectory.hpp"
-#include "run/contact_outputs.hpp"
+#include "run/columns/contact_outputs.hpp"
 #include "run/frames/vtk.hpp"
 
 namespace hilda::run {

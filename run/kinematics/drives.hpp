@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "run/state_columns.hpp"
+#include "run/columns/state_columns.hpp"
 
 #include <memory>
 

@@ -14,8 +14,8 @@
 #include "run/kinematics/prescribed_motion.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
-#include "run/sink.hpp"
 #include "run/tables/run_table.hpp"
+#include "run/tables/sink.hpp"
 
 #include <fmt/format.h>
 

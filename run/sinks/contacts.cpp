@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Table contacts: forces and motion of all contacts at the output rows.
 
-#include "run/state_columns.hpp"
+#include "run/columns/state_columns.hpp"
 
 namespace hilda::run {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Table outputs: the outputs that the model file lists, at the output rows.
 
-#include "run/output_columns.hpp"
+#include "run/columns/output_columns.hpp"
 
 namespace hilda::run {
 

@@ -3,7 +3,7 @@
 /// output rows.
 
 #include "lie/euler_parameters.hpp"
-#include "run/coupling.hpp"
+#include "run/recording/coupling.hpp"
 #include "run/tables/table_sink.hpp"
 
 namespace hilda::run {

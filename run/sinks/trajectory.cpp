@@ -4,8 +4,8 @@
 
 #include "dae/model.hpp"
 #include "dae/start.hpp"
-#include "run/contact_outputs.hpp"
-#include "run/state_columns.hpp"
+#include "run/columns/contact_outputs.hpp"
+#include "run/columns/state_columns.hpp"
 
 namespace hilda::run {
 

@@ -4,7 +4,7 @@
 #include "io/option_values.hpp"
 #include "run/frames/frame_files.hpp"
 #include "run/frames/model_frames.hpp"
-#include "run/sink.hpp"
+#include "run/tables/sink.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "run/tables/run_table.hpp"
 
 #include "io/nearest.hpp"
-#include "run/sink.hpp"
+#include "run/tables/sink.hpp"
 
 #include <cstdio>
 #include <filesystem>

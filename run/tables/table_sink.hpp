@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "run/sink.hpp"
 #include "run/tables/run_table.hpp"
+#include "run/tables/sink.hpp"
 
 #include <memory>
 #include <string>

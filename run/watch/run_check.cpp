@@ -4,7 +4,6 @@
 #include "dae/model.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "run/run_settings.hpp"
 
 #include <fmt/format.h>
 

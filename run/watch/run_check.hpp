@@ -19,6 +19,11 @@ struct Scheme;
 
 namespace hilda::run {
 
+/// The integrator of a run without --integrator: leapfrog in angular momentum, of second order in positions,
+/// velocities and constraint forces
+inline constexpr const char* default_integrator = "rA-half-1-momentum";
+inline constexpr double default_step = 1e-3;  ///< [s], of a run without --step
+
 /// io::UsageError "run: NAME ..." for settings (such as --rtol), a step and an output interval that do not
 /// fit the scheme. `scheme` has adaptive steps unless a step is given or it has none.
 void check_step_options(const lie::Scheme& scheme, const std::vector<std::string>& settings, bool has_step,

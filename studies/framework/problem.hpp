@@ -56,12 +56,12 @@ extern template class hilda::io::Registry<hilda::studies::Problem>;
 
 namespace hilda::studies {
 
-/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. A family has one member
-/// in this list, with the name of the family.
+/// All built-in problems, sorted by name; a file adds one by io::Registry<Problem>::add. A family has one
+/// member in this list, with the name of the family.
 inline const std::vector<Problem>& problems() { return io::Registry<Problem>::all(); }
 
-/// The problem with this name: one of the list, or a member of a family. lie::InvalidInput with the nearest name
-/// otherwise.
+/// The problem with this name: one of the list, or a member of a family. lie::InvalidInput with the nearest
+/// name otherwise.
 Problem problem(const std::string& name);
 
 /// The problem with this name, or the model file at this path. The reference solution of a model file is

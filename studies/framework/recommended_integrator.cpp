@@ -3,7 +3,7 @@
 
 #include "dae/model.hpp"
 #include "lie/schemes.hpp"
-#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include "lie/steps/accelerations.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 #include "reference/motions/ellipsoid_on_plane.hpp"
-#include "run/contact_rows.hpp"
+#include "run/columns/contact_rows.hpp"
 
 namespace hilda::studies {
 

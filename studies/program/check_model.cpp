@@ -11,11 +11,11 @@
 #include "io/message.hpp"
 #include "lie/schemes.hpp"
 #include "lie/solver/saddle.hpp"
-#include "run/contact_outputs.hpp"
+#include "run/columns/contact_outputs.hpp"
+#include "run/columns/output_columns.hpp"
 #include "run/events/run_events.hpp"
 #include "run/named_model.hpp"
-#include "run/output_columns.hpp"
-#include "run/run_settings.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/framework/recommended_integrator.hpp"
 
 #include <fmt/format.h>

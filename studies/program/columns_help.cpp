@@ -2,7 +2,7 @@
 #include "studies/program/columns_help.hpp"
 
 #include "dae/model_file.hpp"
-#include "run/output_columns.hpp"
+#include "run/columns/output_columns.hpp"
 
 #include <fmt/format.h>
 

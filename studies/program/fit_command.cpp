@@ -12,7 +12,6 @@
 #include "run/figures.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
-#include "run/run_settings.hpp"
 #include "run/watch/run_check.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/framework/table.hpp"

@@ -3,7 +3,8 @@
 
 #include "io/error.hpp"
 #include "io/message.hpp"
-#include "run/sink.hpp"
+#include "run/tables/sink.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
 #include "studies/program/plot.hpp"

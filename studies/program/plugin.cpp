@@ -13,7 +13,7 @@
 #include "io/registry.hpp"
 #include "lie/schemes.hpp"
 #include "run/plugin_interface.hpp"
-#include "run/sink.hpp"
+#include "run/tables/sink.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 #include "studies/program/plot.hpp"

@@ -6,7 +6,7 @@
 #include "studies/framework/study.hpp"
 #include "studies/program/fit_command.hpp"
 #include "studies/program/plot.hpp"
-#include "studies/program/reproduce.hpp"
+#include "studies/program/repeating/reproduce.hpp"
 #include "studies/program/view.hpp"
 
 #include <CLI/CLI.hpp>

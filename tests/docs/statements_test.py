@@ -106,7 +106,7 @@ def counts_of(hilda):
 def counts(programs):
     mutations = len(json.loads(text("tests/mutations/mutations.json")))
     expect("CONTRIBUTING.md", "places of mutations.py", int(found(r"changes the source in (\d+) places", "CONTRIBUTING.md")), mutations)
-    source = text("studies/program/reproduction.cpp")
+    source = text("studies/program/repeating/reproduction.cpp")
     entries = len(re.findall(r'^ +{"[\w-]+", \d,', source, re.M))
     page = text("docs/guide/reproduce.md")
     for total in set(re.findall(r"^\[ *\d+/(\d+)\]", page, re.M)):

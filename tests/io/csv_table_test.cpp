@@ -2,7 +2,7 @@
 #include "io/formats/csv_table.hpp"
 
 #include "io/error.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

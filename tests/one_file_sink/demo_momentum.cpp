@@ -5,7 +5,7 @@
 #include "dae/model.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
-#include "run/sink.hpp"
+#include "run/tables/sink.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/single_run.hpp"
 #include "tests/support/adaptive_scheme.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

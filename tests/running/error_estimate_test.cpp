@@ -6,8 +6,8 @@
 #include "lie/integrator.hpp"
 #include "reference/solvers/reference_solution.hpp"
 #include "studies/framework/problem.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,8 @@
 #include "dae/model_file.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
-#include "run/checkpoint.hpp"
-#include "run/recorder.hpp"
+#include "run/recording/checkpoint.hpp"
+#include "run/recording/recorder.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/support/bristle.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 using namespace hilda::tests;
 using Catch::Matchers::Contains;

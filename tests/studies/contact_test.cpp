@@ -2,7 +2,7 @@
 /// Models with contacts in the program.
 
 #include "io/error.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

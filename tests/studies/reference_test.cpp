@@ -5,8 +5,8 @@
 #include "studies/framework/reference_solution.hpp"
 #include "studies/framework/study_context.hpp"
 #include "tests/support/adaptive_scheme.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,8 @@
 #include "lie/schemes.hpp"
 #include "run/single_run.hpp"
 #include "tests/support/bristle_contacts.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -12,7 +12,7 @@
 /// The step of the dissertation, 5e-3 s, is above 4.64e-3 s, the stability limit of the friction springs of a
 /// homogeneous ball. The default step is therefore 2.5e-3 s.
 
-#include "run/contact_outputs.hpp"
+#include "run/columns/contact_outputs.hpp"
 #include "run/diagnosis.hpp"
 #include "studies/experiments/chapter5/recorded_run.hpp"
 

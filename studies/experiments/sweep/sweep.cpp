@@ -13,13 +13,14 @@
 #include "dae/model_file.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
-#include "run/invariants.hpp"
+#include "run/columns/invariants.hpp"
+#include "run/columns/output_columns.hpp"
 #include "run/named_model.hpp"
-#include "run/output_columns.hpp"
 #include "run/provenance.hpp"
-#include "run/run_settings.hpp"
-#include "run/sink.hpp"
+#include "run/recording/run_settings.hpp"
 #include "run/tables/run_table.hpp"
+#include "run/tables/sink.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/experiments/sweep/swept_model.hpp"
 
 #include <fmt/format.h>

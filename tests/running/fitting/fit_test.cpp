@@ -5,7 +5,7 @@
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "tests/support/paths.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

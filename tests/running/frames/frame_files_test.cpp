@@ -4,7 +4,7 @@
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "run/frames/vtk.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -13,10 +13,10 @@
 #include "contact/surfaces/sphere.hpp"
 #include "contact/surfaces/superquadric.hpp"
 #include "contact/surfaces/torus.hpp"
-#include "tests/support/csv.hpp"
 #include "tests/support/icosphere.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

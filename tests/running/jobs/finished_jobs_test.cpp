@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/jobs/finished_jobs.hpp"
 
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda inverse: loads of drivers, and of joints whose motion a CSV file prescribes, against closed forms.
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda kinematics: motion and driver loads of driven mechanisms, against time integration and a closed
 /// form.
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -6,7 +6,7 @@
 
 #include "io/files.hpp"
 #include "run/tables/run_table.hpp"
-#include "tests/support/csv.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <hdf5.h>
 #include <hilda/version.hpp>

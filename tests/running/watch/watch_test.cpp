@@ -10,8 +10,8 @@
 #include "lie/settings.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/support/no_allocation.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

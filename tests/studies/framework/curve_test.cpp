@@ -2,7 +2,7 @@
 #include "studies/framework/curve.hpp"
 
 #include "studies/framework/published.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include "lie/check.hpp"
 

@@ -2,7 +2,7 @@
 #include "studies/framework/latex.hpp"
 
 #include "studies/framework/table.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Failed runs of studies, and options that a study does not use
 #include "lie/integrator.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

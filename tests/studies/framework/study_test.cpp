@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -2,8 +2,8 @@
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

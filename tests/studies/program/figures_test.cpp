@@ -3,8 +3,8 @@
 /// by tests/studies/figures_test.py.
 
 #include "studies/program/plot.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 /// The help texts: length of lines, named commands and studies, options and files of studies.
 
 #include "studies/framework/study.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Commands on a model file: parameters, projected initial data, Euler angles.
 #include "lie/euler_sequence.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

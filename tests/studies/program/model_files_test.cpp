@@ -4,8 +4,8 @@
 
 #include "io/json.hpp"
 #include "io/json_source.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

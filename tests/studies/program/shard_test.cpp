@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// hilda study --shard I/N and hilda collect.
 #include "tests/studies/program/divided_studies.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

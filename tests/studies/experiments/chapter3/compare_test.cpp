@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/support/csv.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <catch2/catch.hpp>
 

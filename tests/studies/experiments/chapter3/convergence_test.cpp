@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The convergence study. Two independent prototypes agree on the expected errors and iterations.
 
-#include "tests/support/csv.hpp"
 #include "tests/support/paths.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -5,7 +5,7 @@
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "studies/framework/problem.hpp"
-#include "tests/support/csv.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

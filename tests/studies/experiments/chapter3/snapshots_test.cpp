@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Study snapshots: Table 3.1, poses at the times of the figures, models with contacts.
-#include "tests/support/csv.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -4,7 +4,7 @@
 #include "studies/framework/work_needed.hpp"
 #include "studies/problems/n_pendulum.hpp"
 #include "tests/support/adaptive_scheme.hpp"
-#include "tests/support/csv.hpp"
+#include "tests/support/program/csv.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

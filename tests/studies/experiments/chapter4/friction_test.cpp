@@ -2,8 +2,8 @@
 // Friction experiments against closed forms and published values, and the study that runs them.
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 
-#include "tests/support/csv.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/experiments/chapter4/incline.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 

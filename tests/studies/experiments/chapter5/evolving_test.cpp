@@ -5,12 +5,12 @@
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
-#include "run/contact_rows.hpp"
-#include "run/invariants.hpp"
+#include "run/columns/contact_rows.hpp"
+#include "run/columns/invariants.hpp"
 #include "studies/problems/evolving_reference.hpp"
-#include "tests/support/csv.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/refused.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/program.hpp"
+#include "tests/support/program/refused.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,7 @@
 #include "io/error.hpp"
 #include "io/provenance.hpp"
 #include "studies/program/repeating/compare_results.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <fmt/format.h>
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "studies/program/reproduce.hpp"
+#include "studies/program/repeating/reproduce.hpp"
 
 #include "io/error.hpp"
 #include "io/files.hpp"
@@ -10,7 +10,7 @@
 #include "io/provenance.hpp"
 #include "run/jobs/finished_jobs.hpp"
 #include "run/provenance.hpp"
-#include "studies/program/reproduction.hpp"
+#include "studies/program/repeating/reproduction.hpp"
 
 #include <fmt/format.h>
 

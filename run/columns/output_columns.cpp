@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/output_columns.hpp"
+#include "run/columns/output_columns.hpp"
 
 #include "dae/model.hpp"
 #include "io/error.hpp"

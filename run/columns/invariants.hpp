@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/model.hpp"
-#include "run/contact_rows.hpp"
+#include "run/columns/contact_rows.hpp"
 
 #include <limits>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The results of the studies of `hilda reproduce`, read from their output directories, and their page.
-#include "studies/program/reproduction.hpp"
+#include "studies/program/repeating/reproduction.hpp"
 
 #include "io/error.hpp"
 #include "io/files.hpp"

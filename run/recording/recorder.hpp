@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "run/checkpoint.hpp"
-#include "run/sink.hpp"
+#include "run/recording/checkpoint.hpp"
+#include "run/tables/sink.hpp"
 #include "run/watch/watch.hpp"
 
 #include <chrono>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/contact_outputs.hpp"
+#include "run/columns/contact_outputs.hpp"
 
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
-#include "run/state_columns.hpp"
+#include "run/columns/state_columns.hpp"
 
 namespace hilda::run {
 

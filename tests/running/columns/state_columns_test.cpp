@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Tables of contacts and of forces: the equations of motion and closed forms hold for their numbers.
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include "lie/so3.hpp"
 

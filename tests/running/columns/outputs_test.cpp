@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// outputs.csv of a run: expressions in the columns of the run, resumption, errors.
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

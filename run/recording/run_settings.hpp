@@ -9,11 +9,6 @@
 
 namespace hilda::run {
 
-/// The integrator of a run without --integrator: leapfrog in angular momentum, of second order in positions,
-/// velocities and constraint forces
-inline constexpr const char* default_integrator = "rA-half-1-momentum";
-inline constexpr double default_step = 1e-3;  ///< [s], of a run without --step
-
 /// Options by name, --step, with their values in the form of the command line; "" for a switch. `model` is
 /// the checksum of the canonical text of the model.
 using RunSettings = std::map<std::string, std::string>;

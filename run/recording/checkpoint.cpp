@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/checkpoint.hpp"
+#include "run/recording/checkpoint.hpp"
 
 #include "io/archive.hpp"
 

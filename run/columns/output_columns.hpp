@@ -4,7 +4,7 @@
 #pragma once
 
 #include "dae/outputs/output.hpp"
-#include "run/state_columns.hpp"
+#include "run/columns/state_columns.hpp"
 
 namespace hilda::run {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The list of `hilda reproduce`. The criteria of an entry are those of its study, --check.
-#include "studies/program/reproduction.hpp"
+#include "studies/program/repeating/reproduction.hpp"
 
 #include <sstream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/run_settings.hpp"
+#include "run/recording/run_settings.hpp"
 
 #include "io/error.hpp"
 #include "io/json_source.hpp"

@@ -6,9 +6,9 @@
 
 #include "contact/evolving/unilateral.hpp"
 #include "lie/statistics.hpp"
-#include "run/invariants.hpp"
-#include "run/run_settings.hpp"
-#include "run/sink.hpp"
+#include "run/columns/invariants.hpp"
+#include "run/recording/run_settings.hpp"
+#include "run/tables/sink.hpp"
 #include "run/watch/watch.hpp"
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/recorder.hpp"
+#include "run/recording/recorder.hpp"
 
 #include "dae/model.hpp"
 #include "dae/start.hpp"

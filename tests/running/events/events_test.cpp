@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// "events" of a model file in hilda run.
-#include "tests/support/csv.hpp"
-#include "tests/support/refused.hpp"
-#include "tests/support/resumed_run.hpp"
+#include "tests/support/program/csv.hpp"
+#include "tests/support/program/refused.hpp"
+#include "tests/support/program/resumed_run.hpp"
 
 #include <catch2/catch.hpp>
 

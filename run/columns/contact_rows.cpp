@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/contact_rows.hpp"
+#include "run/columns/contact_rows.hpp"
 
 #include "dae/model.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/checkpoint.hpp"
+#include "run/recording/checkpoint.hpp"
 
 #include "dae/model_file.hpp"
 #include "io/archive.hpp"
 #include "studies/framework/problem.hpp"
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

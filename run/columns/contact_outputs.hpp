@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "run/contact_rows.hpp"
+#include "run/columns/contact_rows.hpp"
 
 #include <string>
 #include <vector>

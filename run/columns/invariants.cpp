@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/invariants.hpp"
+#include "run/columns/invariants.hpp"
 
 #include <algorithm>
 

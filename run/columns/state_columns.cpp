@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/state_columns.hpp"
+#include "run/columns/state_columns.hpp"
 
 #include "dae/model.hpp"
 

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -34,4 +34,13 @@ void* module_symbol(const std::string& what, const ModuleFile& file, const char*
     return found;
 }
 
+void refuse_without_module(const std::string& what, const std::string& module, const std::string& target,
+                           const std::string& package)
+{
+    throw NotAvailable(what + ": needs the module " + module +
+                       ", which was not built; after 'apt-get install " + package +
+                       "' the commands 'cmake --preset release' and 'cmake --build build/release --target " +
+                       target + "' in the source tree build it, and the Debian package hilda has it");
+}
+
 }  // namespace hilda::io

@@ -23,4 +23,9 @@ std::string find_module(const ModuleFile& file);
 /// "WHAT: ..." if it cannot be loaded.
 void* module_symbol(const std::string& what, const ModuleFile& file, const char* symbol);
 
+/// Throws NotAvailable "WHAT: needs the module ..." with the way to build it: the target of CMake, and the
+/// Debian package that it needs.
+[[noreturn]] void refuse_without_module(const std::string& what, const std::string& module,
+                                        const std::string& target, const std::string& package);
+
 }  // namespace hilda::io

@@ -33,10 +33,7 @@ std::unique_ptr<Communicator> make_communicator()
                                             .caller = reinterpret_cast<const void*>(&make_communicator),
                                             .global = true},
                                            "hilda_mpi");
-    if (symbol == nullptr)
-        throw io::NotAvailable(
-            "mpirun: this program was built without MPI; install it (Debian: apt-get install "
-            "libopenmpi-dev), then configure and build again");
+    if (symbol == nullptr) io::refuse_without_module("mpirun", "hilda-mpi.so", "hilda_mpi", "libopenmpi-dev");
     std::unique_ptr<Communicator> made;
     reinterpret_cast<void (*)(std::unique_ptr<Communicator>&)>(symbol)(made);
     return made;

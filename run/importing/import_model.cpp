@@ -20,10 +20,11 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Format {
-    const char *root, *name, *module, *symbol, *package;
+    const char *root, *name, *module, *symbol, *target, *package;
 };
-constexpr Format formats[] = {{"robot", "URDF", "hilda-urdf.so", "hilda_import_urdf", "liburdfdom-dev"},
-                              {"mujoco", "MJCF", "hilda-mjcf.so", "hilda_import_mjcf", "libmujoco-dev"}};
+constexpr Format formats[] = {
+    {"robot", "URDF", "hilda-urdf.so", "hilda_import_urdf", "hilda_urdf", "liburdfdom-dev"},
+    {"mujoco", "MJCF", "hilda-mjcf.so", "hilda_import_mjcf", "hilda_mjcf", "libmujoco-dev"}};
 
 /// Name of the first element of an XML text; empty if there is none
 std::string_view root_element(std::string_view text)
@@ -63,11 +64,8 @@ int import_model(const ImportOptions& options)
                                             .caller = reinterpret_cast<const void*>(&import_model)},
                                            format.symbol);
     if (symbol == nullptr)
-        throw io::NotAvailable(
-            fmt::format("import: this program was built without the reader of {} files; "
-                        "install it (Debian: apt-get install {}), then configure and "
-                        "build again",
-                        format.name, format.package));
+        io::refuse_without_module(std::string("import of ") + format.name, format.module, format.target,
+                                  format.package);
     ImportedModel model;
     reinterpret_cast<void (*)(const std::string&, bool, ImportedModel&)>(symbol)(options.file,
                                                                                  options.free_base, model);

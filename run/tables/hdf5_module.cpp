@@ -26,9 +26,7 @@ std::shared_ptr<RunTables> hdf5_tables(const std::string& directory, const RunRe
                                             .caller = reinterpret_cast<const void*>(&hdf5_tables)},
                                            "hilda_hdf5_tables");
     if (symbol == nullptr)
-        throw io::NotAvailable(
-            "--format hdf5: this program was built without HDF5; install it (Debian: apt-get install "
-            "libhdf5-dev), then configure and build again, or use --format csv");
+        io::refuse_without_module("--format hdf5", "hilda-hdf5.so", "hilda_hdf5", "libhdf5-dev");
     std::shared_ptr<RunTables> tables;
     reinterpret_cast<MakeTables>(symbol)(directory, record, tables);
     return tables;

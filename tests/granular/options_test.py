@@ -124,6 +124,15 @@ def waiting_threads(runs, particles):
                "the waiting of threads does not change the results")
 
 
+def wrong_instruction_set(runs, case):
+    """A wrong HILDA_ISA: a run is refused, and --version, which a bug report contains, names it"""
+    wrong = dict(env=dict(runs.environment, HILDA_ISA="nonsense"))
+    refused = runs.run(f"{case}.json", "--output", "isa", **wrong)
+    expect(refused.returncode == 2 and "HILDA_ISA: must be" in refused.stderr and "got 'nonsense'" in refused.stderr, f"{refused}")
+    version = runs.run("--version", **wrong)
+    expect(version.returncode == 0 and "vector instructions: HILDA_ISA: must be" in version.stdout, f"{version}")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
@@ -135,7 +144,8 @@ def main():
         resume(runs, short, particles)
         strict(runs, short, summary["watch"])
         waiting_threads(runs, particles)
-    print("changed entries, old names, --resume, --strict and waiting threads")
+        wrong_instruction_set(runs, short)
+    print("changed entries, old names, --resume, --strict, waiting threads and a wrong instruction set")
 
 
 if __name__ == "__main__":

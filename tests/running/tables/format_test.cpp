@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The option --format of runs.
 
-#include "tests/support/program.hpp"
+#include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -39,7 +39,7 @@ TEST_CASE("without HDF5 --format hdf5 ends with exit code 7 and says what to ins
         "cd '" + in.path.string() + "' && bin/hilda run double_pendulum --format hdf5 --output a >out 2>err";
     const int status = std::system(command.c_str());  // NOLINT(cert-env33-c, concurrency-mt-unsafe)
     CHECK(WEXITSTATUS(status) == 7);
-    CHECK_THAT(read(in / "err"), Contains("--format hdf5: this program was built without HDF5") &&
+    CHECK_THAT(read(in / "err"), Contains("--format hdf5: needs the module hilda-hdf5.so") &&
                                      Contains("apt-get install libhdf5-dev"));
     CHECK_FALSE(fs::exists(in / "a"));
 }

@@ -127,31 +127,28 @@ void March::finish(std::span<Observer* const> observers)
     for (Observer* o : observers) o->accepted(node, n, iterations);
 }
 
+void TrajectoryRecorder::accepted(const State& node, long n, int /*iterations*/)
+{
+    if (!grid.is_row(n) || n <= last) return;
+    last = n;
+    trajectory.row.push_back({.t = node.t,
+                              .body = node.body,
+                              .alpha = node.alpha,
+                              .lambda = node.lambda,
+                              .discrete_state = node.discrete_state,
+                              .internal_state = node.internal_state,
+                              .history = {}});
+}
+
 Trajectory march(State x, Integrator& integrator, const TimeGrid& grid, std::span<Observer* const> observers)
 {
-    struct Recorder final : Observer {
-        const TimeGrid& grid;
-        Trajectory trajectory;
-        explicit Recorder(const TimeGrid& grid) : grid(grid) {}
-        void accepted(const State& node, long n, int) override
-        {
-            if (!grid.is_row(n)) return;
-            trajectory.row.push_back({.t = node.t,
-                                      .body = node.body,
-                                      .alpha = node.alpha,
-                                      .lambda = node.lambda,
-                                      .discrete_state = node.discrete_state,
-                                      .internal_state = node.internal_state,
-                                      .history = {}});
-        }
-    } recorder(grid);
-
+    TrajectoryRecorder recorder(grid);
     std::vector<Observer*> all(observers.begin(), observers.end());
     all.push_back(&recorder);
     March progress(std::move(x), integrator, grid.h);
     while (progress.number() < grid.steps) progress.advance(all);
     progress.finish(all);
-    return recorder.trajectory;
+    return std::move(recorder.trajectory);
 }
 
 }  // namespace hilda::lie

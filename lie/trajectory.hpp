@@ -49,6 +49,19 @@ struct Trajectory {
     std::vector<State> row;
 };
 
+/// Copies the output rows of a run.
+class TrajectoryRecorder final : public Observer {
+public:
+    explicit TrajectoryRecorder(const TimeGrid& grid) : grid(grid) {}
+    void accepted(const State& node, long n, int iterations) override;
+
+    Trajectory trajectory;
+
+private:
+    const TimeGrid grid;
+    long last = -1;  ///< number of the last row: a node is passed twice after a failure
+};
+
 /// A time integration in progress. It holds the current node; a run can be saved between two steps and
 /// resumed.
 class March {

@@ -2,7 +2,6 @@
 #include "run/single_run.hpp"
 
 #include "contact/evolving/unilateral.hpp"
-#include "contact/soft_friction.hpp"
 #include "io/archive.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
@@ -10,11 +9,9 @@
 #include "io/option_values.hpp"
 #include "io/program.hpp"
 #include "io/provenance.hpp"
-#include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "run/columns/contact_rows.hpp"
-#include "run/diagnosis.hpp"
 #include "run/figures.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
@@ -60,72 +57,74 @@ RunResult SingleRun::execute()
     read();
     lie::Settings integrator_settings = options.settings;
     integrator_settings.stop = [] { return io::Interrupt::caught() != 0; };
-    const std::unique_ptr<lie::Integrator> integrator =
-        contact::make_integrator(*description.model, scheme, integrator_settings);
-    using Action = Watch::Action;
-    Watch watch(*description.model, description.x, *integrator, scheme, grid,
-                options.strict ? Action::strict : Action::stop, options.force);
     const std::shared_ptr<RunTables> tables = run_tables(options.outputs, directory,
                                                          {{"program", version_line()},
                                                           {"command_line", options.command_line},
                                                           {"integrator", scheme.name},
                                                           {"model", description.name},
                                                           {"model_text", text_of_model()}});
+    if (!description.events.empty()) refuse_events();
+    using Action = Watch::Action;
+    Simulation simulation({.model = description,
+                           .scheme = scheme,
+                           .grid = grid,
+                           .settings = integrator_settings,
+                           .watch = options.strict ? Action::strict : Action::stop,
+                           // A resumed run was checked when it started.
+                           .accept_unstable = options.force || from.has_value(),
+                           .end = result.end,
+                           .interval = options.interval.value_or(0),
+                           .dropped_rows = result.start.dropped,
+                           .event_table = tables.get()});
+    for (const Finding& warning : simulation.warnings()) {
+        warn(warning.text);
+        if (warning.name == "model" || warning.name == "soft_friction")
+            result.warnings.push_back(warning.text);
+    }
     Recorder recorder({.model = *description.model,
                        .outputs = description.outputs,
                        .model_name = description.name,
-                       .grid = grid,
+                       .grid = simulation.grid(),
                        .end = result.end,
                        .directory = directory,
                        .options = options.outputs,
                        .warn = [this](const std::string& what) { warn(what); },
                        .tables = tables,
                        .coupling = options.coupling},
-                      *integrator, watch);
-    // A resumed run was checked when it started: an unstable step only gives a warning.
-    if (const std::string unstable =
-            check_run(*description.model, description.x, scheme, grid, options.force || from.has_value());
-        !unstable.empty())
-        warn(unstable);
-    if (!description.events.empty()) events = make_events(integrator_settings, *tables);
+                      simulation.integrator(), simulation.watch());
+    for (lie::Observer* observer : recorder.observers()) simulation.observe(*observer);
     if (options.error)
         refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
                                                 integrator_settings, grid);
+    if (refined) simulation.observe_checked(*refined);
     lock.create();
     if (!from) clear_directory();
     remove_figure(directory, "trajectory.png");  // of the shorter run, if this one continues it
     result.setup_seconds = seconds(Clock::now() - begin);
-    march(*integrator, recorder);
-    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(integrator.get()))
+    march(simulation, recorder);
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&simulation.integrator()))
         for (const contact::ContactEvent& e : unilateral->events())
             if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
                      event_name(e.type), e.speed});
-    result.watch = watch.json();
-    for (const Finding& found : watch.findings())
+    result.watch = simulation.watch().json();
+    for (const Finding& found : simulation.findings())
         if (!result.message.ends_with(found.text)) add_warning(found.text);  // not the one that ended the run
-    if (const std::string rank = rank_warning(*integrator); !rank.empty()) add_warning(rank);
     if (refined) result.error = refined->estimate(result.events.size());
     if (options.coupling != nullptr) options.coupling->close(result.exit_code);
-    finish(recorder);
+    finish(simulation, recorder);
     return std::move(result);
 }
 
-/// io::UsageError if the run cannot have events
-std::unique_ptr<RunEvents> SingleRun::make_events(const lie::Settings& integrator_settings,
-                                                  RunTables& tables) const
+/// io::UsageError if a run with these options cannot have events
+void SingleRun::refuse_events() const
 {
     const auto refuse = [&](const std::string& why) {
         throw io::UsageError("run: " + description.events.front().value->name_place + ": " + why);
     };
     if (options.coupling != nullptr) refuse("a co-simulation has no events");
     if (options.error) refuse("--error is for models without events");
-    const auto make = [this, integrator_settings] {
-        return contact::make_integrator(*description.model, scheme, integrator_settings);
-    };
-    if (const std::string why = why_no_events(scheme, *make()); !why.empty()) refuse(why);
-    return std::make_unique<RunEvents>(description, make, tables);
 }
 
 void SingleRun::read()
@@ -146,13 +145,6 @@ void SingleRun::read()
         interval = io::number_in<double>(from->settings[interval_option]);
     grid = time_grid(scheme, result.end, options.step, interval);
     if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
-    for (const std::string& warning : grid_warnings(grid, result.end, options.interval.value_or(0), scheme))
-        warn(warning);
-    for (std::string& w : contact::soft_friction_warnings(*description.model, description.x))
-        description.warnings.push_back(std::move(w));
-    for (const std::string& w : description.warnings) warn(w);
-    for (const std::string& row : result.start.dropped)
-        warn(row + ": redundant with the constraints before it, dropped from the equations");
     log(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
                     result.start.position_residual, result.start.velocity_residual,
                     result.start.projected ? ", projected" : ""));
@@ -170,7 +162,6 @@ void SingleRun::read()
     result.constraints = description.model->constraints();
     for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
         result.contacts.push_back(c->name);
-    result.warnings = description.warnings;
     result.set = description.changes;
     result.parameters = description.parameters;
     result.command_line = options.command_line;
@@ -266,31 +257,81 @@ std::string SingleRun::text_of_model() const
     return result.start.projected ? dae::text_at(description, description.x) : description.text;
 }
 
-void SingleRun::march(lie::Integrator& integrator, Recorder& recorder)
+/// The progress line, the checkpoints and the coupling between the steps
+class SingleRun::Loop final : public StepLoop {
+public:
+    Loop(SingleRun& run, Simulation& simulation, Recorder& recorder)
+        : run(run), simulation(simulation), recorder(recorder),
+          line(run.options.quiet, run.result.end, run.grid.steps, simulation.number()),
+          watch_clock(line.shown() || run.options.checkpoint > 0), saved(Clock::now())
+    {}
+    ~Loop() override { line.clear(); }
+
+    Next before_step(lie::March& march) override
+    {
+        if (io::Interrupt::caught() != 0) return Next::interrupt;
+        if (run.options.coupling != nullptr) run.options.coupling->before_step(march);
+        return Next::step;
+    }
+    void after_step(const lie::March& march) override
+    {
+        if (!watch_clock) return;
+        const Clock::time_point now = Clock::now();
+        line.update(now, march.node().t, march.number(), simulation.integrator().statistics());
+        if (run.options.checkpoint > 0 && seconds(now - saved) >= run.options.checkpoint) {
+            run.save_checkpoint(simulation, recorder);
+            saved = Clock::now();
+        }
+    }
+    void before_finish(const lie::March& /*march*/) override
+    {
+        line.clear();
+        if (run.scheme.resumes) run.final_checkpoint = run.checkpoint(simulation, recorder);
+        if (run.options.coupling == nullptr) return;
+        // The two sides end one after the other. A run that is killed in between continues from here.
+        run.save_checkpoint(simulation, recorder);
+        run.options.coupling->before_finish();
+    }
+
+private:
+    SingleRun& run;
+    Simulation& simulation;
+    Recorder& recorder;
+    Progress line;
+    const bool watch_clock;
+    Clock::time_point saved;
+};
+
+void SingleRun::march(Simulation& simulation, Recorder& recorder)
 {
-    lie::March march = from ? lie::March(from->node, integrator, grid.h, from->number, from->iterations)
-                            : lie::March(description.x, integrator, grid.h);
     if (from) {
+        simulation.resume(from->node, from->number, from->iterations);
         earlier_seconds = from->wall_seconds;
         result.resumed_at = from->number;
     }
     recorder.open(from);
-    if (events) {
+    RunEvents* const events = simulation.events();
+    if (events != nullptr) {
         const bool continues = from && from->sinks.contains("events");
         events->open(continues ? from->sinks.at("events") : "", from_file);
     }
     if (options.coupling != nullptr)
-        options.coupling->begin(march, [this](const std::string& what) { add_warning(what); });
+        options.coupling->begin(simulation.march(), [this](const std::string& what) { add_warning(what); });
     begin = Clock::now();
     // An extended run is unfinished from here on. A checkpoint at the start, so that the run can be resumed
     // at any time.
     if (extends) std::remove(path("summary.json").c_str());
-    if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(march, recorder);
-    advance(march, integrator, recorder);
-    last_node = march.node().t;
+    if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(simulation, recorder);
+    Outcome outcome;
+    {
+        Loop loop(*this, simulation, recorder);
+        outcome = simulation.run(&loop);
+    }
+    ended(simulation, recorder, outcome);
+    last_node = simulation.state().t;
     result.invariants = recorder.invariants;
     recorder.close();
-    if (events) {
+    if (events != nullptr) {
         events->close();
         result.located = events->counts();
         if (const std::string fault = events->fault(); !fault.empty() && result.status == "ok") {
@@ -336,88 +377,35 @@ void SingleRun::check_contacts()
     }
 }
 
-void SingleRun::advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder)
+/// Records how the simulation ended.
+void SingleRun::ended(Simulation& simulation, Recorder& recorder, const Outcome& outcome)
 {
-    std::vector<lie::Observer*> observers = recorder.observers();
-    if (events) observers.insert(observers.begin(), events.get());
-    if (refined) observers.push_back(refined.get());
-    Progress line(options.quiet, result.end, grid.steps, march.number());
-    const bool watch_clock = line.shown() || options.checkpoint > 0;
-    Clock::time_point saved = Clock::now();
-    const auto advance_once = [&] {
-        try {
-            if (options.coupling != nullptr) options.coupling->before_step(march);
-            march.advance(observers);
-            return true;
-        } catch (const lie::Interrupted&) {  // during a step; the current node is unchanged
-            return false;
-        }
-    };
-    try {
-        while (march.number() < grid.steps && io::Interrupt::caught() == 0 && advance_once()) {
-            if (!watch_clock) continue;
-            const Clock::time_point now = Clock::now();
-            line.update(now, march.node().t, march.number(), integrator.statistics());
-            if (options.checkpoint > 0 && seconds(now - saved) >= options.checkpoint) {
-                save_checkpoint(march, recorder);
-                saved = Clock::now();
-            }
-        }
-        count(march, recorder);  // before the additional step of finish(), which is not a step of the run
-        line.clear();
-        if (march.number() == grid.steps) {
-            if (scheme.resumes) final_checkpoint = checkpoint(march, recorder);
-            if (options.coupling != nullptr) {
-                // The two sides end one after the other. A run that is killed in between continues from here.
-                save_checkpoint(march, recorder);
-                options.coupling->before_finish();
-            }
-            return march.finish(observers);
-        }
-        result.status = "interrupted";
+    grid = simulation.grid();
+    result.statistics = recorder.statistics(outcome.statistics);
+    result.t = outcome.t;
+    result.stopped_by = outcome.stopped_by;
+    result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
+    if (outcome.status == "interrupted") {
+        result.status = outcome.status;
         result.exit_code = io::exit_code::signal + io::Interrupt::caught();
-        if (scheme.resumes) save_checkpoint(march, recorder);
+        if (scheme.resumes) save_checkpoint(simulation, recorder);
         if (!options.quiet)
             io::message(!scheme.resumes ? "hilda: interrupted\n"
                                         : "hilda: interrupted; --resume continues from the checkpoint in " +
                                               directory + '\n');
-    } catch (const StoppedByEvent& stop) {
-        line.clear();
-        end_at(stop, march, recorder);
-    } catch (const lie::NumericalFailure& failure) {
-        count(march, recorder);
-        line.clear();
-        // The start node of the failed step is the last valid node, and may be an output row. The status
-        // stays that of the step if a check of this node fails as well. The run is complete if it ends at an
-        // event before this node.
-        if (recorder.last_node() != march.number()) try {
-                march.finish(observers);
-            } catch (const StoppedByEvent& stop) {
-                return end_at(stop, march, recorder);
-            } catch (const lie::NumericalFailure&) {
-            }
-        failed(failure, march);
+    } else if (outcome.failed()) {
+        result.status = outcome.status;
+        result.exit_code = io::exit_code::numerical_failure;
+        result.message = outcome.message + (outcome.detail.empty() ? "" : "; " + outcome.detail);
+        io::message("hilda: error[" + outcome.status + "]: " + outcome.message + '\n');
+        if (!outcome.detail.empty()) io::message("  " + outcome.detail + '\n');
     }
 }
 
-/// The state at the event becomes the last row.
-void SingleRun::end_at(const StoppedByEvent& stop, const lie::March& march, Recorder& recorder)
+std::string SingleRun::checkpoint(Simulation& simulation, Recorder& recorder) const
 {
-    count(march, recorder);
-    result.t = stop.x.t;
-    result.stopped_by = stop.event;
-    grid.steps = march.number();
-    try {
-        recorder.accepted(stop.x, march.number(), march.iterations_of_last_step());
-    } catch (const lie::NodeFailure& failure) {
-        failed(failure, march);
-    }
-}
-
-std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) const
-{
-    Checkpoint c = recorder.checkpoint(march);
-    if (events) c.sinks["events"] = events->save();
+    Checkpoint c = recorder.checkpoint(simulation.march());
+    if (simulation.events() != nullptr) c.sinks["events"] = simulation.events()->save();
     c.settings = settings;
     c.end = result.end;
     c.interval = grid.interval;
@@ -425,36 +413,19 @@ std::string SingleRun::checkpoint(const lie::March& march, Recorder& recorder) c
     return to_bytes(std::move(c));
 }
 
-void SingleRun::save_checkpoint(const lie::March& march, Recorder& recorder)
+void SingleRun::save_checkpoint(Simulation& simulation, Recorder& recorder)
 {
     if (options.coupling != nullptr) options.coupling->save();
-    io::CheckpointFiles(directory).save(checkpoint(march, recorder));
-    log(fmt::format("checkpoint at step {}", march.number()));
+    io::CheckpointFiles(directory).save(checkpoint(simulation, recorder));
+    log(fmt::format("checkpoint at step {}", simulation.number()));
 }
 
-void SingleRun::count(const lie::March& march, const Recorder& recorder)
-{
-    result.statistics = recorder.statistics();
-    result.t = march.node().t;
-    result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
-}
-
-void SingleRun::failed(const lie::NumericalFailure& failure, const lie::March& march)
-{
-    const Diagnosis d = diagnose(failure, *description.model, march.node(), march.number(), grid.h, scheme);
-    result.status = failure.status;
-    result.exit_code = io::exit_code::numerical_failure;
-    result.message = d.what + (d.detail.empty() ? "" : "; " + d.detail);
-    io::message("hilda: error[" + failure.status + "]: " + d.what + '\n');
-    if (!d.detail.empty()) io::message("  " + d.detail + '\n');
-}
-
-void SingleRun::finish(const Recorder& recorder)
+void SingleRun::finish(Simulation& simulation, const Recorder& recorder)
 {
     result.files = recorder.files();
     result.files.insert(result.files.begin(), "model.json");
-    if (events)
-        for (const std::string& file : events->files()) result.files.push_back(file);
+    if (simulation.events() != nullptr)
+        for (const std::string& file : simulation.events()->files()) result.files.push_back(file);
     result.files.emplace_back("summary.json");
     const bool ok = result.status == "ok";
     // In this order, so that a run that is killed here can be resumed.

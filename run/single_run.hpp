@@ -8,19 +8,15 @@
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
-#include "run/events/run_events.hpp"
 #include "run/progress.hpp"
 #include "run/recording/checkpoint.hpp"
 #include "run/recording/recorder.hpp"
 #include "run/run_options.hpp"
+#include "run/simulation.hpp"
 #include "run/summary.hpp"
 
 #include <optional>
 #include <string>
-
-namespace hilda::lie {
-class Integrator;
-}
 
 namespace hilda::run {
 
@@ -46,21 +42,19 @@ private:
     void load_checkpoint();
     /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
     void check_continues() const;
-    std::unique_ptr<RunEvents> make_events(const lie::Settings& integrator_settings, RunTables& tables) const;
+    void refuse_events() const;
     void clear_directory() const;
     RunSettings settings_of_run();
     /// The text of model.json
     std::string text_of_model() const;
-    void march(lie::Integrator& integrator, Recorder& recorder);
-    void advance(lie::March& march, lie::Integrator& integrator, Recorder& recorder);
-    void end_at(const StoppedByEvent& stop, const lie::March& march, Recorder& recorder);
-    std::string checkpoint(const lie::March& march, Recorder& recorder) const;
-    void save_checkpoint(const lie::March& march, Recorder& recorder);
-    void count(const lie::March& march, const Recorder& recorder);
+    class Loop;
+    void march(Simulation& simulation, Recorder& recorder);
+    void ended(Simulation& simulation, Recorder& recorder, const Outcome& outcome);
+    std::string checkpoint(Simulation& simulation, Recorder& recorder) const;
+    void save_checkpoint(Simulation& simulation, Recorder& recorder);
     void add_warning(const std::string& what);
     void check_contacts();
-    void failed(const lie::NumericalFailure& failure, const lie::March& march);
-    void finish(const Recorder& recorder);
+    void finish(Simulation& simulation, const Recorder& recorder);
 
     std::string path(const std::string& file) const { return directory + '/' + file; }
 
@@ -75,7 +69,6 @@ private:
     bool extends = false;  ///< continues a run that has ended
     std::string
         final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
-    std::unique_ptr<RunEvents> events;     ///< of a model with events
     std::unique_ptr<RefinedRuns> refined;  ///< of --error
     double last_node = 0;                  ///< time of the last accepted node [s]
     Clock::time_point begin;

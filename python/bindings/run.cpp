@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/bindings/run.hpp"
 
-#include "contact/evolving/unilateral.hpp"
-#include "contact/soft_friction.hpp"
 #include "io/error.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
@@ -15,10 +13,8 @@
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
 #include "run/columns/output_columns.hpp"
-#include "run/diagnosis.hpp"
+#include "run/simulation.hpp"
 #include "run/watch/run_check.hpp"
-#include "run/watch/watch.hpp"
-#include "studies/framework/run.hpp"
 #include "studies/framework/study.hpp"
 
 #include <fmt/format.h>
@@ -163,12 +159,8 @@ private:
 };
 
 /// What a run leaves besides its arrays
-struct Outcome {
-    std::string status = "ok";
-    std::string stopped_by = {};  ///< name of the event that ended the run
-    double t = 0;
-    double seconds = 0;  ///< CPU time of the steps [s]
-    lie::Statistics statistics = {};
+struct Ended {
+    run::Outcome outcome;
     py::object error = py::none();  ///< exception that ended the run
 };
 
@@ -177,68 +169,48 @@ py::object with_traceback(const py::error_already_set& error)
     return error.trace() ? error.value().attr("with_traceback")(error.trace()) : error.value();
 }
 
-lie::Statistics march(lie::March& march, const lie::Integrator& integrator, const lie::TimeGrid& grid,
-                      std::span<lie::Observer* const> observers, PythonObserver* observer, Signals& signals)
-{
-    const py::gil_scoped_release release;
-    while (march.number() < grid.steps && !signals.raised() && !(observer != nullptr && observer->stopped))
-        march.advance(observers);
-    const lie::Statistics statistics = integrator.statistics();  // without the additional step of finish()
-    if (!signals.error()) march.finish(observers);
-    return statistics;
-}
+/// Signals of Python, and an observer that ends the run
+class PythonLoop final : public run::StepLoop {
+public:
+    PythonLoop(Signals& signals, const PythonObserver* observer) : signals(signals), observer(observer) {}
 
-Outcome advance(lie::March& run, const lie::Integrator& integrator, lie::TimeGrid& grid,
-                std::span<lie::Observer* const> observers, PythonObserver* observer, Rows& rows,
-                const dae::Model& model, const lie::Scheme& scheme)
+    Next before_step(lie::March& /*march*/) override
+    {
+        if (signals.raised()) return Next::interrupt;
+        return observer != nullptr && observer->stopped ? Next::stop : Next::step;
+    }
+
+private:
+    Signals& signals;
+    const PythonObserver* const observer;
+};
+
+/// Exceptions of Python code - observers, forces, integrators - are not failures of the simulation.
+Ended march(run::Simulation& simulation, const PythonObserver* observer)
 {
-    Outcome out;
+    Ended ended;
     Signals signals;
-    const double begin = studies::thread_seconds();
+    PythonLoop loop(signals, observer);
+    run::Outcome& out = ended.outcome;
     try {
-        out.statistics = march(run, integrator, grid, observers, observer, signals);
-        if (observer != nullptr && observer->stopped) out.status = "stopped";
-    } catch (const lie::Interrupted&) {
-    } catch (const run::StoppedByEvent& stop) {  // the state at the event is the last row
-        out.status = "stopped";
-        out.stopped_by = stop.event;
-        out.t = stop.x.t;
-        grid.steps = run.number();
-        try {
-            rows.accepted(stop.x, run.number(), 0);
-        } catch (const py::error_already_set& error) {  // of a function of the model
-            out.status = "error";
-            out.error = with_traceback(error);
-        } catch (const std::exception&) {
-            out.status = "error";
-            out.error = python_error(std::current_exception());
-        }
-    } catch (const io::NumericalFailure& failure) {
-        // The start node of the failed step is the last valid node, and may be an output row.
-        out.status = failure.status;
-        std::string text = failure.what();
-        try {
-            const run::Diagnosis d = run::diagnose(failure, model, run.node(), run.number(), grid.h, scheme);
-            text = d.what + (d.detail.empty() ? "" : "; " + d.detail);
-            run.finish(observers);
-        } catch (const io::NumericalFailure&) {
-        } catch (const py::error_already_set&) {  // of a force or an observer, beyond the failure
-        }
-        out.error = numerical_failure(failure, text);
+        const py::gil_scoped_release release;
+        out = simulation.run(&loop);
     } catch (const py::error_already_set& error) {
         out.status = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
-        out.error = with_traceback(error);
+        ended.error = with_traceback(error);
     } catch (const std::exception&) {
         out.status = "error";
-        out.error = python_error(std::current_exception());
+        ended.error = python_error(std::current_exception());
     }
+    if (out.failed() && ended.error.is_none())
+        ended.error = numerical_failure(lie::NumericalFailure(out.status, out.cause),
+                                        out.message + (out.detail.empty() ? "" : "; " + out.detail));
     if (signals.error()) {
         out.status = "interrupted";
-        out.error = with_traceback(*signals.error());
+        ended.error = with_traceback(*signals.error());
     }
-    if (out.stopped_by.empty()) out.t = run.node().t;
-    out.seconds = studies::thread_seconds() - begin;
-    return out;
+    if (out.stopped_by.empty()) out.t = simulation.state().t;
+    return ended;
 }
 
 py::dict counters(const lie::Statistics& of)
@@ -289,60 +261,48 @@ py::dict run(const ModelPointer& model, const Options& options)
     lie::Settings settings =
         settings_of("run", *scheme, options.settings, options.step.has_value(), options.interval);
     settings.stop = &Signals::raised_in_run;
-    lie::TimeGrid grid = run::time_grid(*scheme, end, options.step, options.interval);
-    std::vector<std::string> warnings = of.warnings;
-    for (const std::string& row : model->start.dropped)
-        warnings.push_back(row + ": redundant with the constraints before it, dropped from the equations");
-    for (std::string& warning : contact::soft_friction_warnings(system, of.x))
-        warnings.push_back(std::move(warning));
-    for (std::string& warning : run::grid_warnings(grid, end, options.interval.value_or(0), *scheme))
-        warnings.push_back(std::move(warning));
-    if (std::string warning = run::check_run(system, of.x, *scheme, grid, options.force); !warning.empty())
-        warnings.push_back(std::move(warning));
-
-    const std::unique_ptr<lie::Integrator> integrator =
-        in_python ? std::make_unique<PythonIntegrator>(options.integrator, system)
-                  : contact::make_integrator(system, *scheme, settings);
-    run::Watch watch(system, of.x, *integrator, *scheme, grid, run::Watch::Action::stop, options.force);
-    Rows rows(of, grid, options.reactions, column_names(of, options.columns));
-    std::vector<lie::Observer*> observers{&rows, &watch};
+    const std::vector<std::string> columns = column_names(of, options.columns);
     EventTables event_tables;
-    std::unique_ptr<run::RunEvents> events;
-    if (!of.events.empty()) {
-        if (const std::string why = in_python ? "events need an integrator of the library"
-                                              : run::why_no_events(*scheme, *integrator);
-            !why.empty())
-            throw io::UsageError("run: " + of.events.front().value->name_place + ": " + why);
-        events = std::make_unique<run::RunEvents>(
-            of, [&] { return contact::make_integrator(system, *scheme, settings); }, event_tables);
-        observers.insert(observers.begin(), events.get());
-    }
+    run::Simulation simulation(
+        {.model = of,
+         .scheme = *scheme,
+         .grid = run::time_grid(*scheme, end, options.step, options.interval),
+         .settings = settings,
+         .accept_unstable = options.force,
+         .end = end,
+         .interval = options.interval.value_or(0),
+         .dropped_rows = model->start.dropped,
+         .event_table = &event_tables,
+         .integrator = in_python ? std::make_unique<PythonIntegrator>(options.integrator, system) : nullptr});
+    std::vector<std::string> warnings;
+    for (const run::Finding& found : simulation.warnings()) warnings.push_back(found.text);
+    Rows rows(of, simulation.grid(), options.reactions, columns);
+    simulation.observe(rows);
     std::unique_ptr<PythonObserver> observer;
     if (!options.observer.is_none()) {
         observer = std::make_unique<PythonObserver>(options.observer);
-        observers.push_back(observer.get());
+        simulation.observe_checked(*observer);
     }
-    lie::March march(of.x, *integrator, grid.h);
-    const Outcome out = advance(march, *integrator, grid, observers, observer.get(), rows, system, *scheme);
-    if (events && !events->fault().empty()) warnings.push_back(events->fault());
-
-    for (const run::Finding& found : watch.findings()) warnings.push_back(found.text);
-    if (std::string warning = run::rank_warning(*integrator); !warning.empty())
-        warnings.push_back(std::move(warning));
+    const Ended ended = march(simulation, observer.get());
+    const run::Outcome& out = ended.outcome;
+    if (simulation.events() != nullptr && !simulation.events()->fault().empty())
+        warnings.push_back(simulation.events()->fault());
+    for (const run::Finding& found : simulation.findings()) warnings.push_back(found.text);
     py::dict result;
     result["arrays"] = rows.arrays();
-    result["columns"] = column_names(of, options.columns);
+    result["columns"] = columns;
     result["events"] = event_tables.arrays(static_cast<size_t>(system.bodies()));
     result["event_names"] = event_names(of);
     result["stopped_by"] = out.stopped_by.empty() ? py::object(py::none()) : py::cast(out.stopped_by);
-    result["seconds"] = out.seconds;
+    result["seconds"] = out.step_seconds;
     result["rows"] = rows.number();
     result["status"] = out.status;
-    result["error"] = out.error;
+    result["error"] = ended.error;
     result["t_end"] = out.t;
     result["integrator"] = scheme->name;
-    result["step"] = scheme->adaptive ? py::object(py::none()) : py::object(py::float_(grid.h));
-    result["statistics"] = counters(out.statistics.steps > 0 ? out.statistics : integrator->statistics());
+    result["step"] = scheme->adaptive ? py::object(py::none()) : py::object(py::float_(simulation.grid().h));
+    result["statistics"] =
+        counters(out.statistics.steps > 0 ? out.statistics : simulation.integrator().statistics());
     result["constraint_norm"] = rows.constraint_norm;
     result["warnings"] = warnings;
     return result;

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/fitting/sampled_run.hpp"
 
-#include "contact/evolving/unilateral.hpp"
 #include "lie/check.hpp"
-#include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "lie/trajectory.hpp"
 #include "run/columns/output_columns.hpp"
-#include "run/watch/run_check.hpp"
-#include "run/watch/watch.hpp"
+#include "run/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,14 +93,13 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
     const double h = t.back() / std::ceil(t.back() / wanted * (1 - same));
     lie::TimeGrid grid = lie::TimeGrid::over(t.back(), h);
     grid.interval = std::max(1L, grid.steps);
-    check_run(system, model.x, scheme, grid, false);
-    const std::unique_ptr<lie::Integrator> integrator =
-        contact::make_integrator(system, scheme, options.settings);
-    Watch watch(system, model.x, *integrator, scheme, grid, Watch::Action::stop);
+    Simulation simulation({.model = model, .scheme = scheme, .grid = grid, .settings = options.settings});
     ObservedColumns observed(system, model.outputs, "fit", columns);
     Nodes nodes(observed, columns.size(), static_cast<size_t>(grid.steps) + 1, system, options.settings.stop);
-    lie::Observer* const observers[] = {&nodes, &watch};
-    lie::march(model.x, *integrator, grid, observers);
+    simulation.observe(nodes);
+    const Outcome outcome = simulation.run();
+    if (outcome.status == "interrupted") throw lie::Interrupted();
+    if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
 
     Samples samples{.values = Eigen::MatrixXd(static_cast<Eigen::Index>(t.size()),
                                               static_cast<Eigen::Index>(columns.size())),
@@ -138,7 +134,7 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
             error = std::max(error, std::abs(sum - other));
         }
     }
-    for (const Finding& found : watch.findings()) samples.warnings.push_back(found.text);
+    for (const Finding& found : simulation.watch().findings()) samples.warnings.push_back(found.text);
     return samples;
 }
 

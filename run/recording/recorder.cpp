@@ -81,7 +81,6 @@ void Recorder::accepted(const lie::State& x, long n, int iterations)
                    .constraint_norm = constraint_norm,
                    .iterations = iterations,
                    .cost = last});
-    recorded = n;
     dae::check_dropped_rows(model, x);
     // lie::March reports a node after the following step; the counters since the last call are those of that
     // step.
@@ -92,7 +91,10 @@ void Recorder::accepted(const lie::State& x, long n, int iterations)
     since = Clock::now();
 }
 
-lie::Statistics Recorder::statistics() const { return sum(earlier_statistics, integrator.statistics(), 1); }
+lie::Statistics Recorder::statistics(const lie::Statistics& of_this_part) const
+{
+    return sum(earlier_statistics, of_this_part, 1);
+}
 
 Checkpoint Recorder::checkpoint(const lie::March& march)
 {
@@ -102,7 +104,7 @@ Checkpoint Recorder::checkpoint(const lie::March& march)
     c.number = march.number();
     c.iterations = march.iterations_of_last_step();
     c.pivots = pivots.node;
-    c.statistics = statistics();
+    c.statistics = statistics(integrator.statistics());
     c.invariants = invariants;
     c.watch = watch.record();
     if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))

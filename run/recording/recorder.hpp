@@ -53,13 +53,11 @@ public:
     /// lie::NodeFailure "constraint_drift" at the first node where a constraint row that was dropped as
     /// redundant is violated.
     void accepted(const lie::State& x, long n, int iterations) override;
-    /// PivotNode, this object, and the Watch
-    std::vector<lie::Observer*> observers() { return {&pivots, this, &watch}; }
-    /// Number of the last node that the sinks received; -1: none
-    long last_node() const { return recorded; }
+    /// PivotNode and this object, to be called before the Watch
+    std::vector<lie::Observer*> observers() { return {&pivots, this}; }
 
-    /// Counters of the whole run, including the part before the checkpoint
-    lie::Statistics statistics() const;
+    /// Counters of the whole run, from those of the part after the checkpoint
+    lie::Statistics statistics(const lie::Statistics& of_this_part) const;
     /// Synchronises the files with the disk and returns a checkpoint of the current node. The caller sets the
     /// members `settings` and `wall_seconds`.
     Checkpoint checkpoint(const lie::March& march);
@@ -83,7 +81,7 @@ private:
     /// Cost of the step that ends at the current node. The node is passed on after the following step,
     /// because schemes with staggered velocities fill the node only then.
     StepCost last;
-    long factorizations = 0, recorded = -1;
+    long factorizations = 0;
     Clock::time_point since;
 };
 

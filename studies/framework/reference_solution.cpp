@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/reference_solution.hpp"
 
-#include "contact/evolving/unilateral.hpp"
 #include "dae/kinematics.hpp"
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
@@ -10,6 +9,7 @@
 #include "reference/solvers/index1.hpp"
 #include "run/diagnosis.hpp"
 #include "run/jobs/pool.hpp"
+#include "run/simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -211,8 +211,24 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
         grid.h = c.instants.dt / static_cast<double>(grid.interval);
         grid.steps = c.instants.count * grid.interval;
     }
-    const auto integrator = contact::make_integrator(*c.started->model, reference, settings);
-    return lie::march(c.started->x, *integrator, grid);
+    // The coarser solution, from which the error is estimated, may be unstable: the estimate is large then.
+    const bool is_coarser = coarser > 1;
+    try {
+        run::Simulation simulation(
+            {.model = *c.started,
+             .scheme = reference,
+             .grid = grid,
+             .settings = settings,
+             .watch = is_coarser ? run::Watch::Action::record : run::Watch::Action::stop,
+             .accept_unstable = is_coarser || options.force});
+        lie::TrajectoryRecorder rows(grid);
+        simulation.observe(rows);
+        const run::Outcome outcome = simulation.run();
+        if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
+        return std::move(rows.trajectory);
+    } catch (const io::UsageError& refused) {
+        context.refuse("the reference " + reference.name + ": " + refused.what());
+    }
 }
 
 }  // namespace hilda::studies

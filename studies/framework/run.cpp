@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/run.hpp"
 
-#include "contact/evolving/unilateral.hpp"
 #include "dae/model_file.hpp"
 #include "io/message.hpp"
-#include "lie/integrator.hpp"
 #include "lie/trajectory.hpp"
 #include "run/diagnosis.hpp"
-#include "run/watch/watch.hpp"
+#include "run/simulation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -26,13 +23,6 @@ std::string Run::resolution() const
 
 std::string Run::name() const { return scheme->name + " on " + c->problem.name + " at " + resolution(); }
 
-double thread_seconds()
-{
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 lie::Settings settings_of(const Run& run, const lie::Settings& of_study)
 {
     lie::Settings settings = of_study;
@@ -43,37 +33,27 @@ lie::Settings settings_of(const Run& run, const lie::Settings& of_study)
 void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* const> observers)
 {
     const dae::Description& d = *run.c->started;
-    const double begin = thread_seconds();
-    std::unique_ptr<lie::Integrator> integrator;
-    std::optional<run::Watch> watch;
-    const auto ended = [&](const std::string& status, const std::string& message) {
-        run.status = status;
-        run.message = message;
-    };
+    lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
+    grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
+    const double begin = run::thread_seconds();
     try {
-        integrator = contact::make_integrator(*d.model, *run.scheme, settings_of(run, of_study));
-        lie::March march(d.x, *integrator, run.h);
-        lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
-        grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
-        watch.emplace(*d.model, d.x, *integrator, *run.scheme, grid, run::Watch::Action::record);
-        std::vector<lie::Observer*> all(observers.begin(), observers.end());
-        all.push_back(&*watch);
-        while (march.number() < grid.steps) march.advance(all);
-        run.statistics =
-            integrator
-                ->statistics();  // before the additional step of finish(), which is not a step of the run
-        run.seconds = thread_seconds() - begin;
-        march.finish(all);
-        run.findings = watch->text();
-        return;
-    } catch (const lie::NumericalFailure& failure) {
-        ended(failure.status, failure.what());
+        run::Simulation simulation({.model = d,
+                                    .scheme = *run.scheme,
+                                    .grid = grid,
+                                    .settings = settings_of(run, of_study),
+                                    .watch = run::Watch::Action::record,
+                                    .accept_unstable = true});
+        for (lie::Observer* observer : observers) simulation.observe(*observer);
+        const run::Outcome outcome = simulation.run();
+        run.status = outcome.status;
+        run.message = outcome.cause;
+        run.statistics = outcome.statistics;
+        run.findings = simulation.watch().text();
+        run.seconds = outcome.setup_seconds + outcome.step_seconds;
     } catch (const lie::InvalidInput& refused) {  // the scheme does not support this model
-        ended("refused", refused.what());
+        run.status = "refused", run.message = refused.what();
+        run.seconds = run::thread_seconds() - begin;
     }
-    if (integrator) run.statistics = integrator->statistics();
-    if (watch) run.findings = watch->text();
-    run.seconds = thread_seconds() - begin;
 }
 
 namespace {

@@ -38,9 +38,6 @@ struct Run {
     std::string name() const;
 };
 
-/// CPU time of the calling thread [s]
-double thread_seconds();
-
 /// The settings of a study, with the rtol of this run if it has one
 lie::Settings settings_of(const Run& run, const lie::Settings& of_study);
 

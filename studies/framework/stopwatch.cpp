@@ -6,6 +6,7 @@
 #include "dae/model_file.hpp"
 #include "lie/settings.hpp"
 #include "run/jobs/pool.hpp"
+#include "run/simulation.hpp"
 #include "studies/framework/table.hpp"
 
 #include <algorithm>
@@ -53,9 +54,9 @@ double seconds_of_march(const Run& run, const lie::Settings& of_study)
         const auto integrator = contact::make_integrator(
             *d.model, *run.scheme, settings);  // a new one, because it may store data of a run
         lie::March march(d.x, *integrator, run.h);
-        const double begin = thread_seconds();
+        const double begin = run::thread_seconds();
         while (march.number() < grid.steps) march.advance({});
-        seconds += thread_seconds() - begin;
+        seconds += run::thread_seconds() - begin;
         ++runs;
     }
     return seconds / static_cast<double>(runs);

@@ -20,6 +20,7 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "lie/solver/linear_solver.hpp"
+#include "run/simulation.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
 
 #include <fmt/format.h>
@@ -245,9 +246,9 @@ void compute(MethodRun& run)
     const Method method = run.make();
     double largest = 0, seconds = 0;
     for (long n = 1; n <= run.steps; ++n) {
-        const double before = thread_seconds();
+        const double before = run::thread_seconds();
         method.step(run.h);
-        if (n > 1) seconds += thread_seconds() - before;
+        if (n > 1) seconds += run::thread_seconds() - before;
         if (run.error) largest = std::max(largest, run.error(method, static_cast<double>(n) * run.h));
     }
     run.seconds = seconds * static_cast<double>(run.steps) / static_cast<double>(std::max(1L, run.steps - 1));

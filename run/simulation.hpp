@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// One simulation: a march in time with the checks before it, the watch over its nodes, its events, and the
+/// diagnosis of a failure.
+///
+/// lie::march() integrates without any of these, for the development of methods.
+///
+///     dae::Description model = dae::load_model("pendulum.json");
+///     dae::start(model);
+///     run::Simulation simulation({.model = model, .scheme = lie::scheme("rA-half-1"), .grid = grid});
+///     simulation.observe(my_observer);
+///     const run::Outcome outcome = simulation.run();
+
+#pragma once
+
+#include "dae/model_file.hpp"
+#include "lie/integrator.hpp"
+#include "lie/settings.hpp"
+#include "lie/trajectory.hpp"
+#include "run/events/run_events.hpp"
+#include "run/watch/watch.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hilda::run {
+
+struct SimulationSetup {
+    const dae::Description& model;  ///< started: see dae::start()
+    const lie::Scheme& scheme;
+    lie::TimeGrid grid;  ///< see time_grid()
+    lie::Settings settings = {};
+    Watch::Action watch = Watch::Action::stop;
+    bool accept_unstable = false;  ///< a step above the stability limit gives a warning
+    /// Ends and rows as they were asked for [s]; 0: those of the grid. A warning says if the grid has others.
+    double end = 0, interval = 0;
+    std::vector<std::string> dropped_rows = {};  ///< of dae::StartReport: a warning for each
+    /// Takes the table of the events of the model; nullptr: the simulation does not look for events
+    RunTables* event_table = nullptr;
+    /// Instead of the one that the scheme makes; nullptr: none. There are no events with it.
+    std::unique_ptr<lie::Integrator> integrator = nullptr;
+};
+
+/// How a simulation ended
+struct Outcome {
+    /// ok; stopped: by an event, or because the caller stopped it; interrupted; otherwise that of the failure
+    std::string status = "ok";
+    std::string message;     ///< of a failure: time, step, scheme, and cause
+    std::string detail;      ///< of a failure: constraint, force or contact; may be empty
+    std::string cause;       ///< of a failure: what the scheme or the check reports, without time and step
+    std::string stopped_by;  ///< name of the event that ended the run
+    double t = 0;            ///< of the last complete node, or of the event [s]
+    lie::Statistics statistics = {};  ///< of the steps up to the last node
+    /// CPU time of this thread [s], of the construction and of the steps
+    double setup_seconds = 0, step_seconds = 0;
+
+    bool failed() const { return status != "ok" && status != "stopped" && status != "interrupted"; }
+};
+
+/// What a caller does between the steps of a simulation
+class StepLoop {
+public:
+    enum class Next {
+        step,
+        stop,      ///< the current node is the last one, and is passed to the observers
+        interrupt  ///< the current node is kept for a resumed run, and is not passed to them
+    };
+
+    virtual ~StepLoop() = default;
+    /// Before each step
+    virtual Next before_step(lie::March& march) = 0;
+    /// After each step
+    virtual void after_step(const lie::March& /*march*/) {}
+    /// After the last step, before the observers receive its node
+    virtual void before_finish(const lie::March& /*march*/) {}
+};
+
+class Simulation {
+public:
+    /// Makes the integrator and checks, in this order: end and rows, stability and prescribed motions, friction
+    /// that is too soft, rows that were dropped, whether the scheme can have the events of the model.
+    ///
+    /// Throws io::UsageError for a run that cannot be correct (check_run(), why_no_events()), and
+    /// lie::InvalidInput if the scheme does not support the model. Description and scheme must outlive the
+    /// simulation.
+    explicit Simulation(SimulationSetup setup);
+    Simulation(const Simulation&) = delete;
+
+    /// What the checks found without refusing the run. The names are grid, model, soft_friction, dropped_row and
+    /// unstable_step.
+    const std::vector<Finding>& warnings() const { return found; }
+
+    /// Adds an observer, after the events and before the watch: it also receives a node at which the watch ends
+    /// the run, and the state of an event that ends it.
+    void observe(lie::Observer& observer) { observers.push_back(&observer); }
+    /// Adds an observer of the nodes that passed the watch.
+    void observe_checked(lie::Observer& observer) { checked.push_back(&observer); }
+
+    /// Continues a run at this node.
+    void resume(const lie::State& node, long number, int iterations);
+
+    /// Computes the steps that are left, and passes the nodes to the observers. Exceptions of observers other than
+    /// io::NumericalFailure and lie::Interrupted are thrown on.
+    Outcome run(StepLoop* loop = nullptr);
+    /// Computes one step. Throws as lie::March::advance().
+    void step();
+
+    const lie::State& state() const { return progress->node(); }
+    long number() const { return progress->number(); }
+    /// The grid; its end is that of the run after a stop
+    const lie::TimeGrid& grid() const { return times; }
+    lie::Integrator& integrator() { return *of_scheme; }
+    Watch& watch() { return *checks; }
+    RunEvents* events() { return events_of_model.get(); }  ///< nullptr if the run has none
+    const lie::March& march() const { return *progress; }
+    /// Findings of the watch, and a constraint that nearly lost rank
+    std::vector<Finding> findings() const;
+
+private:
+    void collect_warnings(const SimulationSetup& setup);
+    /// of_caller: the integrator is not that of the scheme
+    void make_events(RunTables& table, bool of_caller);
+    void list_observers();
+    void advance(StepLoop* loop, Outcome& outcome);
+    void ended_at(const StoppedByEvent& event, Outcome& outcome);
+    void failed(const io::NumericalFailure& failure, Outcome& outcome);
+
+    const dae::Description& model;
+    const lie::Scheme& scheme;
+    lie::TimeGrid times;
+    const lie::Settings settings;
+    const Watch::Action action;
+    double setup_seconds = 0;
+    std::unique_ptr<lie::Integrator> of_scheme;
+    std::vector<Finding> found;
+    std::unique_ptr<RunEvents> events_of_model;
+    std::optional<Watch> checks;
+    std::optional<lie::March> progress;
+    std::vector<lie::Observer*> observers, checked, all;
+    /// Number of the last node that the observers received
+    class Last final : public lie::Observer {
+    public:
+        void accepted(const lie::State& /*node*/, long n, int /*iterations*/) override { number = n; }
+        long number = -1;
+    } last;
+};
+
+/// CPU time of the calling thread [s]
+double thread_seconds();
+
+}  // namespace hilda::run

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs libhilda.so (the rooms io, lie, dae and contact), one library for each of granular, reference and studies, the
+# Installs libhilda.so (the rooms io, lie, dae, contact and run), one library for each of granular, reference and studies, the
 # headers, the programs, and a package for find_package(hilda CONFIG). libhilda.so and libhilda_granular.so do not use GSL.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -11,7 +11,9 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 
 # The target is not named `hilda`, the name of the program in the build folder.
 add_library(hilda_library SHARED
-    $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>)
+    $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>
+    # Fits need GSL: they are in libhilda_studies.so.
+    "$<FILTER:$<TARGET_OBJECTS:run_objects>,EXCLUDE,fitting>")
 add_library(hilda::hilda ALIAS hilda_library)
 set_target_properties(hilda_library PROPERTIES
     OUTPUT_NAME hilda
@@ -23,7 +25,8 @@ target_include_directories(hilda_library PUBLIC
     "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR};${hilda_generated};${PROJECT_BINARY_DIR}/granular/generated>"
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hilda>)
 target_link_libraries(hilda_library PUBLIC
-    Eigen3::Eigen KLU::KLU SPQR::SPQR fmt::fmt)
+    Eigen3::Eigen KLU::KLU SPQR::SPQR fmt::fmt
+    PRIVATE "$<BUILD_INTERFACE:Threads::Threads;${CMAKE_DL_LIBS}>")
 if(NOT HILDA_SANITIZE)
     # No undefined symbols. This also verifies that these rooms do not use GSL.
     target_link_options(hilda_library PRIVATE LINKER:--no-undefined)
@@ -67,7 +70,7 @@ if(TARGET granular_objects)
         OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
         PRIVATE OpenMP::OpenMP_CXX hilda_granular_loops)
     hilda_component(studies
-        OBJECTS $<TARGET_OBJECTS:run_objects> $<TARGET_OBJECTS:granular_run_objects>
+        OBJECTS "$<FILTER:$<TARGET_OBJECTS:run_objects>,INCLUDE,fitting>" $<TARGET_OBJECTS:granular_run_objects>
             $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
         PUBLIC hilda_reference_library hilda_granular_library
         PRIVATE Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})

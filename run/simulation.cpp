@@ -25,12 +25,12 @@ Simulation::Simulation(SimulationSetup setup)
 {
     const double begin = thread_seconds();
     const bool of_caller = setup.integrator != nullptr;
-    of_scheme =
-        of_caller ? std::move(setup.integrator) : contact::make_integrator(*model.model, scheme, settings);
+    of_scheme = of_caller ? std::move(setup.integrator) : contact::make_integrator(model, scheme, settings);
     collect_warnings(setup);
-    if (setup.event_table != nullptr && !model.events.empty()) make_events(*setup.event_table, of_caller);
-    checks.emplace(*model.model, model.x, *of_scheme, scheme, times, action, setup.accept_unstable);
-    progress.emplace(model.x, *of_scheme, times.h);
+    if (setup.event_table != nullptr && setup.description != nullptr && !setup.description->events.empty())
+        make_events(*setup.description, *setup.event_table, of_caller);
+    checks.emplace(model, setup.start, *of_scheme, scheme, times, action, setup.accept_unstable);
+    progress.emplace(setup.start, *of_scheme, times.h);
     setup_seconds = thread_seconds() - begin;
 }
 
@@ -40,23 +40,23 @@ void Simulation::collect_warnings(const SimulationSetup& setup)
         for (std::string& text : texts) found.push_back({name, std::move(text)});
     };
     if (setup.end > 0) add("grid", grid_warnings(times, setup.end, setup.interval, scheme));
-    add("model", model.warnings);
-    add("soft_friction", contact::soft_friction_warnings(*model.model, model.x));
+    if (setup.description != nullptr) add("model", setup.description->warnings);
+    add("soft_friction", contact::soft_friction_warnings(model, setup.start));
     for (const std::string& row : setup.dropped_rows)
         add("dropped_row", {row + ": redundant with the constraints before it, dropped from the equations"});
-    if (std::string unstable = check_run(*model.model, model.x, scheme, times, setup.accept_unstable);
+    if (std::string unstable = check_run(model, setup.start, scheme, times, setup.accept_unstable);
         !unstable.empty())
         add("unstable_step", {std::move(unstable)});
 }
 
-void Simulation::make_events(RunTables& table, bool of_caller)
+void Simulation::make_events(const dae::Description& description, RunTables& table, bool of_caller)
 {
     if (const std::string why =
             of_caller ? "events need an integrator of the library" : why_no_events(scheme, *of_scheme);
         !why.empty())
-        throw io::UsageError("run: " + model.events.front().value->name_place + ": " + why);
-    const auto make = [this] { return contact::make_integrator(*model.model, scheme, settings); };
-    events_of_model = std::make_unique<RunEvents>(model, make, table);
+        throw io::UsageError("run: " + description.events.front().value->name_place + ": " + why);
+    const auto make = [this] { return contact::make_integrator(model, scheme, settings); };
+    events_of_model = std::make_unique<RunEvents>(description, make, table);
 }
 
 void Simulation::resume(const lie::State& node, long number, int iterations)
@@ -153,9 +153,17 @@ void Simulation::failed(const io::NumericalFailure& failure, Outcome& outcome)
     outcome.status = failure.status;
     outcome.cause = failure.what();
     if (action == Watch::Action::record) return;  // no evaluation of the model in a study
-    const Diagnosis d =
-        diagnose(failure, *model.model, progress->node(), progress->number(), times.h, scheme);
+    const Diagnosis d = diagnose(failure, model, progress->node(), progress->number(), times.h, scheme);
     outcome.message = d.what, outcome.detail = d.detail;
+}
+
+std::vector<Finding> Simulation::all_findings() const
+{
+    std::vector<Finding> list;
+    for (const Finding& warning : found)
+        if (warning.name == "soft_friction") list.push_back(warning);
+    for (Finding& of_run : findings()) list.push_back(std::move(of_run));
+    return list;
 }
 
 std::vector<Finding> Simulation::findings() const

@@ -4,9 +4,9 @@
 ///
 /// lie::march() integrates without any of these, for the development of methods.
 ///
-///     dae::Description model = dae::load_model("pendulum.json");
-///     dae::start(model);
-///     run::Simulation simulation({.model = model, .scheme = lie::scheme("rA-half-1"), .grid = grid});
+///     dae::start(model, x);
+///     run::Simulation simulation(
+///         {.model = model, .start = x, .scheme = lie::scheme("rA-half-1"), .grid = grid});
 ///     simulation.observe(my_observer);
 ///     const run::Outcome outcome = simulation.run();
 
@@ -27,7 +27,8 @@
 namespace hilda::run {
 
 struct SimulationSetup {
-    const dae::Description& model;  ///< started: see dae::start()
+    const dae::Model& model;
+    const lie::State& start;  ///< consistent: see dae::start()
     const lie::Scheme& scheme;
     lie::TimeGrid grid;  ///< see time_grid()
     lie::Settings settings = {};
@@ -35,8 +36,9 @@ struct SimulationSetup {
     bool accept_unstable = false;  ///< a step above the stability limit gives a warning
     /// Ends and rows as they were asked for [s]; 0: those of the grid. A warning says if the grid has others.
     double end = 0, interval = 0;
-    std::vector<std::string> dropped_rows = {};  ///< of dae::StartReport: a warning for each
-    /// Takes the table of the events of the model; nullptr: the simulation does not look for events
+    std::vector<std::string> dropped_rows = {};     ///< of dae::StartReport: a warning for each
+    const dae::Description* description = nullptr;  ///< of a model file: its warnings and its events
+    /// Takes the table of the events of the description; nullptr: the simulation does not look for events
     RunTables* event_table = nullptr;
     /// Instead of the one that the scheme makes; nullptr: none. There are no events with it.
     std::unique_ptr<lie::Integrator> integrator = nullptr;
@@ -78,21 +80,22 @@ public:
 
 class Simulation {
 public:
-    /// Makes the integrator and checks, in this order: end and rows, stability and prescribed motions, friction
-    /// that is too soft, rows that were dropped, whether the scheme can have the events of the model.
+    /// Makes the integrator and checks, in this order: end and rows, stability and prescribed motions,
+    /// friction that is too soft, rows that were dropped, whether the scheme can have the events of the
+    /// model.
     ///
     /// Throws io::UsageError for a run that cannot be correct (check_run(), why_no_events()), and
-    /// lie::InvalidInput if the scheme does not support the model. Description and scheme must outlive the
-    /// simulation.
+    /// lie::InvalidInput if the scheme does not support the model. Model, description and scheme must outlive
+    /// the simulation.
     explicit Simulation(SimulationSetup setup);
     Simulation(const Simulation&) = delete;
 
-    /// What the checks found without refusing the run. The names are grid, model, soft_friction, dropped_row and
-    /// unstable_step.
+    /// What the checks found without refusing the run. The names are grid, model, soft_friction, dropped_row
+    /// and unstable_step.
     const std::vector<Finding>& warnings() const { return found; }
 
-    /// Adds an observer, after the events and before the watch: it also receives a node at which the watch ends
-    /// the run, and the state of an event that ends it.
+    /// Adds an observer, after the events and before the watch: it also receives a node at which the watch
+    /// ends the run, and the state of an event that ends it.
     void observe(lie::Observer& observer) { observers.push_back(&observer); }
     /// Adds an observer of the nodes that passed the watch.
     void observe_checked(lie::Observer& observer) { checked.push_back(&observer); }
@@ -100,8 +103,8 @@ public:
     /// Continues a run at this node.
     void resume(const lie::State& node, long number, int iterations);
 
-    /// Computes the steps that are left, and passes the nodes to the observers. Exceptions of observers other than
-    /// io::NumericalFailure and lie::Interrupted are thrown on.
+    /// Computes the steps that are left, and passes the nodes to the observers. Exceptions of observers other
+    /// than io::NumericalFailure and lie::Interrupted are thrown on.
     Outcome run(StepLoop* loop = nullptr);
     /// Computes one step. Throws as lie::March::advance().
     void step();
@@ -114,19 +117,21 @@ public:
     Watch& watch() { return *checks; }
     RunEvents* events() { return events_of_model.get(); }  ///< nullptr if the run has none
     const lie::March& march() const { return *progress; }
-    /// Findings of the watch, and a constraint that nearly lost rank
+    /// Findings of the watch, and constraints that nearly lost rank
     std::vector<Finding> findings() const;
+    /// Friction that is too soft, and findings(): all about the solution, for callers that report at the end
+    std::vector<Finding> all_findings() const;
 
 private:
     void collect_warnings(const SimulationSetup& setup);
     /// of_caller: the integrator is not that of the scheme
-    void make_events(RunTables& table, bool of_caller);
+    void make_events(const dae::Description& description, RunTables& table, bool of_caller);
     void list_observers();
     void advance(StepLoop* loop, Outcome& outcome);
     void ended_at(const StoppedByEvent& event, Outcome& outcome);
     void failed(const io::NumericalFailure& failure, Outcome& outcome);
 
-    const dae::Description& model;
+    const dae::Model& model;
     const lie::Scheme& scheme;
     lie::TimeGrid times;
     const lie::Settings settings;

@@ -65,7 +65,8 @@ RunResult SingleRun::execute()
                                                           {"model_text", text_of_model()}});
     if (!description.events.empty()) refuse_events();
     using Action = Watch::Action;
-    Simulation simulation({.model = description,
+    Simulation simulation({.model = *description.model,
+                           .start = description.x,
                            .scheme = scheme,
                            .grid = grid,
                            .settings = integrator_settings,
@@ -75,6 +76,7 @@ RunResult SingleRun::execute()
                            .end = result.end,
                            .interval = options.interval.value_or(0),
                            .dropped_rows = result.start.dropped,
+                           .description = &description,
                            .event_table = tables.get()});
     for (const Finding& warning : simulation.warnings()) {
         warn(warning.text);

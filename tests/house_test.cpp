@@ -80,7 +80,7 @@ const FolderOrder run_folders = {
     {"", {"columns", "events", "recording", "tables", "watch"}},
     {"importing", {""}},
     {"kinematics", {"", "columns", "tables"}},
-    {"fitting", {"columns", "jobs", "watch"}},
+    {"fitting", {"", "columns", "jobs"}},
     {"cosim", {"", "recording", "watch"}},
 };
 

@@ -7,13 +7,11 @@
 /// Checks: the energy in the trough, and the quarter period of small oscillations, in which the centre of the
 /// ball moves on a curve with the curvature κ/(1 - κ R), κ = a (2 π/length)²: T = 2 π √((1 - κ R)/(g κ)).
 
-#include "contact/evolving/unilateral.hpp"
 #include "contact/implicit_surface.hpp"
 #include "contact/surface_types.hpp"
 #include "dae/model_file.hpp"
 #include "lie/schemes.hpp"
-#include "lie/settings.hpp"
-#include "lie/trajectory.hpp"
+#include "run/simulation.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -70,13 +68,16 @@ int main()
     const double kappa = a * 4 * pi * pi, T = 2 * pi * std::sqrt((1 - kappa * R) / (g * kappa));
 
     // Contacts as constraints need a scheme that takes algebraic variables; this one is recommended.
-    // make_integrator() also treats unilateral contacts, which open and close; this contact is bilateral.
-    const auto integrator =
-        contact::make_integrator(model, lie::scheme("rA-half-1-momentum"), lie::Settings{});
-    const lie::Motion end =
-        lie::march(description.x, *integrator, {.h = T / 4 / 500, .steps = 500, .interval = 500})
-            .row.back()
-            .body[0];
+    run::Simulation simulation({.model = model,
+                                .start = description.x,
+                                .scheme = lie::scheme("rA-half-1-momentum"),
+                                .grid = {.h = T / 4 / 500, .steps = 500, .interval = 500}});
+    const run::Outcome outcome = simulation.run();
+    if (outcome.failed()) {
+        std::printf("FAILED: %s: %s\n", outcome.status.c_str(), outcome.message.c_str());
+        return 1;
+    }
+    const lie::Motion end = simulation.state().body[0];
 
     const double fall = begin.r.z() - end.r.z(), speed = end.rdot.norm(),
                  speed_exact = std::sqrt(2 * g * fall);

@@ -9,10 +9,8 @@
 #include "dae/joints.hpp"
 #include "dae/model.hpp"
 #include "dae/start.hpp"
-#include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
-#include "lie/settings.hpp"
-#include "lie/trajectory.hpp"
+#include "run/simulation.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -58,11 +56,19 @@ int main()
     const double w = std::sqrt(1.5 * g / L), k = std::sin(theta_0 / 2), quarter = std::comp_ellint_1(k) / w;
     const lie::TimeGrid grid{.h = quarter / 500, .steps = 500, .interval = 500};
 
-    // A scheme by its name; `hilda integrators` lists them. Settings has tolerances and the linear solver.
-    const auto integrator = lie::scheme("rA-half-1-kick").make(model, lie::Settings{});
-    const lie::Trajectory trajectory = lie::march(x, *integrator, grid);
+    // A scheme by its name; `hilda integrators` lists them. The simulation checks the step, the energy and
+    // more, as `hilda run` does; lie::march() integrates without checks.
+    run::Simulation simulation(
+        {.model = model, .start = x, .scheme = lie::scheme("rA-half-1-kick"), .grid = grid});
+    lie::TrajectoryRecorder rows(grid);
+    simulation.observe(rows);
+    const run::Outcome outcome = simulation.run();
+    if (outcome.failed()) {
+        std::printf("FAILED: %s: %s\n", outcome.status.c_str(), outcome.message.c_str());
+        return 1;
+    }
 
-    const dae::State& end = trajectory.row.back();
+    const dae::State& end = rows.trajectory.row.back();
     const lie::Vec3 u = end.body[bar].A * x_axis;
     const double theta = std::atan2(u.x(), -u.z());
     // omega_bar has body-frame components; y is the axis of the hinge in both frames.

@@ -7,10 +7,8 @@
 #include "dae/joints.hpp"
 #include "dae/model.hpp"
 #include "dae/start.hpp"
-#include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
-#include "lie/settings.hpp"
-#include "lie/trajectory.hpp"
+#include "run/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -120,9 +118,18 @@ int main()
 
     dae::start(model, x);
     constexpr double t_end = 0.5;
-    const auto integrator = lie::scheme("rA-half-1-kick").make(model, lie::Settings{});
     // The grid from 0 to t_end with the step 1e-4 s; by default every node is a row of the trajectory.
-    const lie::Trajectory trajectory = lie::march(x, *integrator, lie::TimeGrid::over(t_end, 1e-4));
+    const lie::TimeGrid grid = lie::TimeGrid::over(t_end, 1e-4);
+    run::Simulation simulation(
+        {.model = model, .start = x, .scheme = lie::scheme("rA-half-1-kick"), .grid = grid});
+    lie::TrajectoryRecorder rows(grid);
+    simulation.observe(rows);
+    const run::Outcome outcome = simulation.run();
+    if (outcome.failed()) {
+        std::printf("FAILED: %s: %s\n", outcome.status.c_str(), outcome.message.c_str());
+        return 1;
+    }
+    const lie::Trajectory& trajectory = rows.trajectory;
     const dae::State& end = trajectory.row.back();
 
     // Free fall with quadratic drag, v_t = √(m g/c): v = v_t tanh(g t/v_t), z = -v_t²/g ln cosh(g t/v_t)

@@ -264,7 +264,8 @@ py::dict run(const ModelPointer& model, const Options& options)
     const std::vector<std::string> columns = column_names(of, options.columns);
     EventTables event_tables;
     run::Simulation simulation(
-        {.model = of,
+        {.model = system,
+         .start = of.x,
          .scheme = *scheme,
          .grid = run::time_grid(*scheme, end, options.step, options.interval),
          .settings = settings,
@@ -272,6 +273,7 @@ py::dict run(const ModelPointer& model, const Options& options)
          .end = end,
          .interval = options.interval.value_or(0),
          .dropped_rows = model->start.dropped,
+         .description = &of,
          .event_table = &event_tables,
          .integrator = in_python ? std::make_unique<PythonIntegrator>(options.integrator, system) : nullptr});
     std::vector<std::string> warnings;

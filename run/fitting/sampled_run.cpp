@@ -93,7 +93,8 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
     const double h = t.back() / std::ceil(t.back() / wanted * (1 - same));
     lie::TimeGrid grid = lie::TimeGrid::over(t.back(), h);
     grid.interval = std::max(1L, grid.steps);
-    Simulation simulation({.model = model, .scheme = scheme, .grid = grid, .settings = options.settings});
+    Simulation simulation(
+        {.model = system, .start = model.x, .scheme = scheme, .grid = grid, .settings = options.settings});
     ObservedColumns observed(system, model.outputs, "fit", columns);
     Nodes nodes(observed, columns.size(), static_cast<size_t>(grid.steps) + 1, system, options.settings.stop);
     simulation.observe(nodes);
@@ -134,7 +135,7 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
             error = std::max(error, std::abs(sum - other));
         }
     }
-    for (const Finding& found : simulation.watch().findings()) samples.warnings.push_back(found.text);
+    for (const Finding& found : simulation.all_findings()) samples.warnings.push_back(found.text);
     return samples;
 }
 

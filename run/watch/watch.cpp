@@ -178,13 +178,6 @@ std::vector<Finding> Watch::findings() const
     return all;
 }
 
-std::string Watch::text() const
-{
-    std::string lines;
-    for (const Finding& found : findings()) lines += found.name + ": " + found.text + '\n';
-    return lines;
-}
-
 io::Json Watch::json() const
 {
     const auto place = [&](const Extreme& e, const std::string& name) {

@@ -88,7 +88,6 @@ public:
 
     /// Warnings, at the end of a run
     std::vector<Finding> findings() const;
-    std::string text() const;  ///< findings() as lines "NAME: TEXT"
     /// For summary.json
     io::Json json() const;
 

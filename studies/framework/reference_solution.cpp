@@ -215,7 +215,8 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
     const bool is_coarser = coarser > 1;
     try {
         run::Simulation simulation(
-            {.model = *c.started,
+            {.model = *c.started->model,
+             .start = c.started->x,
              .scheme = reference,
              .grid = grid,
              .settings = settings,
@@ -225,6 +226,10 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
         simulation.observe(rows);
         const run::Outcome outcome = simulation.run();
         if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
+        if (!is_coarser && !options.quiet)
+            for (const run::Finding& found : simulation.all_findings())
+                io::warning(
+                    fmt::format("the reference {} of {}: {}", reference.name, c.problem.name, found.text));
         return std::move(rows.trajectory);
     } catch (const io::UsageError& refused) {
         context.refuse("the reference " + reference.name + ": " + refused.what());

@@ -37,7 +37,8 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
     grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
     const double begin = run::thread_seconds();
     try {
-        run::Simulation simulation({.model = d,
+        run::Simulation simulation({.model = *d.model,
+                                    .start = d.x,
                                     .scheme = *run.scheme,
                                     .grid = grid,
                                     .settings = settings_of(run, of_study),
@@ -48,7 +49,8 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
         run.status = outcome.status;
         run.message = outcome.cause;
         run.statistics = outcome.statistics;
-        run.findings = simulation.watch().text();
+        for (const run::Finding& found : simulation.all_findings())
+            run.findings += found.name + ": " + found.text + '\n';
         run.seconds = outcome.setup_seconds + outcome.step_seconds;
     } catch (const lie::InvalidInput& refused) {  // the scheme does not support this model
         run.status = "refused", run.message = refused.what();

@@ -16,6 +16,7 @@
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
 #include "run/recording/coupling.hpp"
+#include "run/recording/setting_options.hpp"
 #include "run/tables/run_table.hpp"
 #include "run/watch/run_check.hpp"
 
@@ -155,7 +156,7 @@ void SingleRun::read()
     result.integrator = scheme.name;
     result.step = grid.h;
     result.interval = static_cast<double>(grid.interval) * grid.h;
-    result.tolerance = options.settings.tolerance;
+    result.settings = options.settings;
     if (scheme.adaptive) {
         result.rtol = options.settings.rtol;
         result.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
@@ -178,27 +179,17 @@ void SingleRun::read()
 
 RunSettings SingleRun::settings_of_run()
 {
-    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
-    const lie::Settings& s = options.settings;
     RunSettings all = options.outputs;
     if (const auto format = all.find(format_option); format != all.end() && format->second == default_format)
         all.erase(format);
     all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
     all["--integrator"] = scheme.name;
-    if (scheme.adaptive) {
-        all["--rtol"] = io::shortest(result.rtol);
-        if (result.atol != result.rtol) all["--atol"] = io::shortest(result.atol);
-    } else {
-        all["--step"] = io::shortest(grid.h);
-    }
+    all.merge(given_settings(options.settings, scheme.adaptive));
+    if (!scheme.adaptive) all["--step"] = io::shortest(grid.h);
     all[interval_option] = io::shortest(result.interval);
     // Rows are counted in steps: with another step the rows of the interrupted run would have another
     // interval.
     if (from && !options.interval) all[interval_option] = from->settings[interval_option];
-    all["--tolerance"] = io::shortest(s.tolerance);
-    all["--linear-solver"] = solvers[static_cast<int>(s.linear_solver)];
-    all["--rho-infinity"] = io::shortest(s.rho_infinity);
-    if (s.reparametrise) all["--reparametrise"] = "";
     if (options.fix_initial) all["--fix-initial"] = "";
     if (!options.plugins.empty()) all["--load"] = fmt::format("{}", fmt::join(options.plugins, " --load "));
     return all;
@@ -221,13 +212,15 @@ void SingleRun::load_checkpoint()
 
 void SingleRun::check_continues() const
 {
-    if (from->settings != settings) {
+    // Checkpoints of version 0.2.0 have some settings with their default values.
+    const RunSettings earlier = without_defaults(from->settings);
+    if (earlier != settings) {
         std::error_code error;
         const std::string file = path("model.json");
         throw io::UsageError(fmt::format(
             "{}: the checkpoint belongs to another run: {}; --force starts it again", directory,
             difference(
-                from->settings, settings,
+                earlier, settings,
                 std::filesystem::exists(file, error) ? io::read_file(file, io::JsonSource::max_bytes) : "",
                 text_of_model())));
     }

@@ -6,6 +6,7 @@
 #include "lie/integrator.hpp"
 #include "run/diagnosis.hpp"
 #include "run/provenance.hpp"
+#include "run/recording/setting_options.hpp"
 
 #include <fmt/format.h>
 
@@ -45,8 +46,13 @@ io::Json summary(const RunResult& r)
         out["integrator"].update(
             {{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"interval", r.interval}});
     else
-        out["integrator"].update(
-            {{"step", r.step}, {"end", r.end}, {"interval", r.interval}, {"tolerance", r.tolerance}});
+        out["integrator"].update({{"step", r.step},
+                                  {"end", r.end},
+                                  {"interval", r.interval},
+                                  {"tolerance", r.settings.tolerance}});
+    const io::Json settings = settings_json(r.settings, r.rtol > 0);
+    for (const io::Json::Member& setting : *settings.members())
+        if (out["integrator"].member(setting.key) == nullptr) out["integrator"][setting.key] = setting.value;
     out["counters"] = {{"steps", r.statistics.steps},
                        {"newton_iterations", r.statistics.iterations},
                        {"factorizations", r.statistics.factorizations},

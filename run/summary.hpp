@@ -5,6 +5,7 @@
 
 #include "dae/start.hpp"
 #include "io/json.hpp"
+#include "lie/settings.hpp"
 #include "lie/statistics.hpp"
 #include "run/columns/invariants.hpp"
 #include "run/error_estimate.hpp"
@@ -23,7 +24,7 @@ struct RunResult {
 
     std::string model, integrator;
     double step = 0, end = 0, interval = 0;  ///< [s]; interval: between output rows, on the time grid
-    double tolerance = 0;                    ///< of the Newton iteration
+    lie::Settings settings;
     double rtol = 0, atol = 0;  ///< of an adaptive scheme, whose nodes are the output rows; 0: fixed step
     double t = 0;               ///< time reached [s]
 

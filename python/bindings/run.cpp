@@ -31,8 +31,7 @@ namespace {
 struct Options {
     py::object integrator;  ///< the name of a scheme, or an object of hilda.Integrator
     std::optional<double> end, step, interval;
-    std::map<std::string, std::string>
-        settings;  ///< values of studies::setting_options(), without the dashes
+    std::map<std::string, std::string> settings;  ///< values of run::setting_options(), without the dashes
     bool reactions, force;
     std::vector<std::string> columns;  ///< names of columns, or of the groups forces, contacts and outputs
     py::object observer;

@@ -2,9 +2,9 @@
 #include "python/bindings/settings.hpp"
 
 #include "lie/schemes.hpp"
+#include "run/recording/setting_options.hpp"
 #include "run/watch/run_check.hpp"
 #include "studies/framework/study.hpp"
-#include "studies/program/command_options.hpp"
 
 namespace hilda::python {
 
@@ -14,7 +14,7 @@ lie::Settings settings_of(const std::string& command, const lie::Scheme& scheme,
 {
     lie::Settings settings;
     std::vector<std::string> given;
-    for (const studies::SettingOption& option : studies::setting_options())
+    for (const run::SettingOption& option : run::setting_options())
         if (const auto value = values.find(option.name.substr(2)); value != values.end()) {
             option.set(settings, option.name, value->second);
             given.push_back(option.name);

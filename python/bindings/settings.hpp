@@ -15,7 +15,7 @@ struct Scheme;
 
 namespace hilda::python {
 
-/// `values`: texts by the names of studies::setting_options() without the dashes. `command` is the name in
+/// `values`: texts by the names of run::setting_options() without the dashes. `command` is the name in
 /// messages. Throws io::UsageError for an invalid value, and for one that the scheme does not use.
 lie::Settings settings_of(const std::string& command, const lie::Scheme& scheme,
                           const std::map<std::string, std::string>& values, bool has_step,

@@ -11,6 +11,7 @@
 #include "run/figures.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
+#include "run/recording/setting_options.hpp"
 #include "studies/framework/latex.hpp"
 
 #include <fmt/format.h>
@@ -37,38 +38,35 @@ std::string text_of(const std::optional<Value>& value)
 /// The options on which the rows of a study depend, with the contents of its files
 run::FinishedJobs::Identity identity(const std::string& study, const StudyOptions& o)
 {
-    run::FinishedJobs::Identity all = {
-        {"study", study},
-        {"version of the program", run::version_line()},
-        {"--problem", joined(o.problems)},
-        {"--integrator", joined(o.integrators)},
-        {"--steps", joined(o.steps)},
-        {"--rtols", joined(o.rtols)},
-        {"--bars", joined(o.bars)},
-        {"--end", text_of(o.end)},
-        {"--set", joined(o.set)},
-        {"--fix-initial", o.fix_initial ? "yes" : "no"},
-        {"--sweep", joined(o.sweep)},
-        {"--observable", o.observable},
-        {"--keep", o.keep ? "yes" : "no"},
-        {"--format", o.format},
-        {"--reference", o.reference},
-        {"--reference-step", text_of(o.reference_step)},
-        {"--reference-rtol", text_of(o.reference_rtol)},
-        {"--preset", o.preset},
-        {"--normal-rows", o.normal_rows},
-        {"--grid", o.grid},
-        {"--vtk", std::to_string(o.vtk)},
-        {"--repeats", std::to_string(o.repeats)},
-        {"--seed", std::to_string(o.seed.value_or(0))},
-        {"--check", o.check ? "yes" : "no"},
-        {"--all", o.all ? "yes" : "no"},
-        {"--shard", o.shard.is_part() ? o.shard.text() : ""},
-        {"plug-ins (--load)", o.plugins.empty() ? "none" : joined(o.plugins)},
-        {"numerical settings",
-         fmt::format("tolerance {}, linear solver {}, rho-infinity {}, reparametrise {}, rtol {}, atol {}",
-                     o.settings.tolerance, static_cast<int>(o.settings.linear_solver),
-                     o.settings.rho_infinity, o.settings.reparametrise, o.settings.rtol, o.settings.atol)}};
+    run::FinishedJobs::Identity all = {{"study", study},
+                                       {"version of the program", run::version_line()},
+                                       {"--problem", joined(o.problems)},
+                                       {"--integrator", joined(o.integrators)},
+                                       {"--steps", joined(o.steps)},
+                                       {"--rtols", joined(o.rtols)},
+                                       {"--bars", joined(o.bars)},
+                                       {"--end", text_of(o.end)},
+                                       {"--set", joined(o.set)},
+                                       {"--fix-initial", o.fix_initial ? "yes" : "no"},
+                                       {"--sweep", joined(o.sweep)},
+                                       {"--observable", o.observable},
+                                       {"--keep", o.keep ? "yes" : "no"},
+                                       {"--format", o.format},
+                                       {"--reference", o.reference},
+                                       {"--reference-step", text_of(o.reference_step)},
+                                       {"--reference-rtol", text_of(o.reference_rtol)},
+                                       {"--preset", o.preset},
+                                       {"--normal-rows", o.normal_rows},
+                                       {"--grid", o.grid},
+                                       {"--vtk", std::to_string(o.vtk)},
+                                       {"--repeats", std::to_string(o.repeats)},
+                                       {"--seed", std::to_string(o.seed.value_or(0))},
+                                       {"--check", o.check ? "yes" : "no"},
+                                       {"--all", o.all ? "yes" : "no"},
+                                       {"--shard", o.shard.is_part() ? o.shard.text() : ""},
+                                       {"plug-ins (--load)", o.plugins.empty() ? "none" : joined(o.plugins)}};
+    for (const run::SettingOption& setting : run::setting_options())
+        all[setting.name] = io::written(setting.value(o.settings));
     constexpr size_t most = 64 << 20;  // as for a model file
     std::error_code error;             // of names that the file system does not accept
     for (const std::string& problem : o.problems)
@@ -247,17 +245,9 @@ void StudyContext::warned(const std::string& warning, const std::string& text)
 
 io::Json StudyContext::whole() const
 {
-    const lie::Settings& s = options.settings;
-    constexpr const char* solvers[] = {"auto", "klu", "condensed"};
     io::Json all = {{"study", name},
-                    {"tolerance", s.tolerance},
-                    {"settings",
-                     {{"tolerance", s.tolerance},
-                      {"linear_solver", solvers[static_cast<int>(s.linear_solver)]},
-                      {"rho_infinity", s.rho_infinity},
-                      {"reparametrise", s.reparametrise},
-                      {"rtol", s.rtol},
-                      {"atol", s.atol > 0 ? io::Json(s.atol) : io::Json("as rtol")}}},
+                    {"tolerance", options.settings.tolerance},
+                    {"settings", run::settings_json(options.settings, true)},
                     {"seed", options.seed.value_or(0)},
                     {"set", options.set},
                     {"provenance", run::provenance(options.command_line, options.jobs)}};

@@ -29,29 +29,6 @@ std::vector<double> descending(const std::string& option, const std::string& tex
 
 }  // namespace
 
-double relative_tolerance(const std::string& option, const std::string& text)
-{
-    const double value = io::finite_number_in(text);
-    if (!(value >= 1e-14 && value <= 0.1))
-        refuse_option(option, "must be a number from 1e-14 (limit of double precision) to 0.1", text);
-    return value;
-}
-
-double absolute_tolerance(const std::string& option, const std::string& text)
-{
-    const double value = io::finite_number_in(text);
-    if (!(value >= 1e-14 && value <= 0.1)) refuse_option(option, "must be a number from 1e-14 to 0.1", text);
-    return value;
-}
-
-lie::LinearSolver linear_solver(const std::string& option, const std::string& text)
-{
-    if (text == "auto") return lie::LinearSolver::automatic;
-    if (text == "klu") return lie::LinearSolver::klu;
-    if (text == "condensed") return lie::LinearSolver::condensed;
-    refuse_option(option, "must be auto, klu or condensed", text);
-}
-
 std::string preset(const std::string& option, const std::string& text)
 {
     return one_of(option, text, std::vector<std::string>{"balanced", "dissertation"});

@@ -5,7 +5,7 @@
 
 #include "io/nearest.hpp"
 #include "io/option_values.hpp"
-#include "lie/solver/linear_solver.hpp"
+#include "run/recording/setting_options.hpp"
 #include "studies/framework/study.hpp"
 
 #include <string>
@@ -24,14 +24,8 @@ using io::refuse_option;
 using io::seed;
 using io::setting;
 using io::with_nearest;
+using run::relative_tolerance;
 
-/// A relative tolerance: 1e-14 <= value < 1. Smaller tolerances are below the rounding errors of double
-/// precision.
-double relative_tolerance(const std::string& option, const std::string& text);
-/// An absolute tolerance: value >= 1e-14
-double absolute_tolerance(const std::string& option, const std::string& text);
-/// auto, klu or condensed
-lie::LinearSolver linear_solver(const std::string& option, const std::string& text);
 /// balanced or dissertation
 std::string preset(const std::string& option, const std::string& text);
 /// tangent or fixed-xy

@@ -30,39 +30,9 @@ void values(CLI::App& command, const std::string& name, const std::string& kind,
         ->allow_extra_args(false);
 }
 
-const std::vector<SettingOption>& setting_options()
-{
-    using Text = const std::string&;
-    static const std::vector<SettingOption> all = {
-        {"--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
-         [](auto& s, Text option, Text text) { s.tolerance = positive_number(option, text); }},
-        {"--max-iterations", "N",
-         "largest number of Newton corrections of a step, before it fails; default: 30",
-         [](auto& s, Text option, Text text) { s.max_iterations = positive_count(option, text); }},
-        {"--linear-solver", "auto|klu|condensed",
-         "solver of the saddle-point system; default: auto, the one with fewer operations",
-         [](auto& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); }},
-        {"--rho-infinity", "RHO",
-         "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest "
-         "damping) to 1 (no damping); default: 0.8",
-         [](auto& s, Text option, Text text) { s.rho_infinity = fraction(option, text); }},
-        {"--reparametrise", "",
-         "change the body frame when Euler angles approach a singular orientation, instead of stopping",
-         [](auto& s, Text, Text) { s.reparametrise = true; }},
-        {"--rtol", "RTOL",
-         "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, rA-radau-5, ida-rp), 1e-14 "
-         "to 0.1; "
-         "default: 1e-10",
-         [](auto& s, Text option, Text text) { s.rtol = relative_tolerance(option, text); }},
-        {"--atol", "ATOL",
-         "absolute local error tolerance of adaptive steps, 1e-14 to 0.1; default: that of --rtol",
-         [](auto& s, Text option, Text text) { s.atol = absolute_tolerance(option, text); }}};
-    return all;
-}
-
 void add_settings(CLI::App& command, lie::Settings& settings, std::vector<std::string>& given)
 {
-    for (const SettingOption& option : setting_options()) {
+    for (const run::SettingOption& option : run::setting_options()) {
         const auto note = [&settings, &given, read = option.set](const std::string& name,
                                                                  const std::string& text) {
             given.push_back(name);

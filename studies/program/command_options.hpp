@@ -48,14 +48,7 @@ CLI::Option* value(CLI::App& command, const std::string& name, const std::string
 void values(CLI::App& command, const std::string& name, const std::string& kind, const std::string& what,
             const Setter& set);
 
-/// An option of lie::Settings, as hilda run and hilda study have it
-struct SettingOption {
-    std::string name, kind, what;
-    void (*set)(lie::Settings& settings, const std::string& option, const std::string& text);
-};
-/// All of them; a switch has no `kind`.
-const std::vector<SettingOption>& setting_options();
-/// Adds all of them; `given` receives the names of those that were given.
+/// Adds all of run::setting_options(); `given` receives the names of those that were given.
 void add_settings(CLI::App& command, lie::Settings& settings, std::vector<std::string>& given);
 
 /// Adds the argument MODEL, which must be given.

@@ -5,6 +5,7 @@
 #include "io/program.hpp"
 #include "run/cosim/communicator.hpp"
 #include "run/cosim/grains.hpp"
+#include "run/recording/setting_options.hpp"
 #include "studies/framework/study_context.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
@@ -73,7 +74,7 @@ const std::vector<OptionOfSome>& options_of_some()
             {"--format", takes::sweep, 0, [](const auto& o) { return !o.format.empty(); }},
             {"--seed", takes::seed, 0, [](const auto& o) { return o.seed.has_value(); }},
             {"--shard", takes::shard, 0, [](const auto& o) { return o.shard.is_part(); }}};
-        for (const SettingOption& setting : setting_options())
+        for (const run::SettingOption& setting : run::setting_options())
             some.push_back({setting.name, studies_with(setting.name), lacks::models,
                             [name = setting.name](const StudyOptions& o) {
                                 const auto& given = o.given_settings;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/recording/setting_options.hpp"
+
+#include "io/error.hpp"
+#include "tests/support/program/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <map>
+
+using namespace hilda;
+using namespace hilda::tests;
+using Catch::Matchers::Contains;
+using run::setting_options;
+
+namespace {
+
+/// A value of each option that is not its default. A new option needs one here.
+const std::map<std::string, std::string> other = {{"--tolerance", "1e-11"},   {"--max-iterations", "29"},
+                                                  {"--linear-solver", "klu"}, {"--rho-infinity", "0.5"},
+                                                  {"--reparametrise", ""},    {"--rtol", "1e-08"},
+                                                  {"--atol", "1e-07"}};
+
+}  // namespace
+
+TEST_CASE("each setting is written as its option takes it, and is recorded unless it has its default value",
+          "[run][settings]")
+{
+    REQUIRE(other.size() == setting_options().size());
+    const lie::Settings defaults;
+    CHECK(run::given_settings(defaults, true).empty());
+    for (const run::SettingOption& option : setting_options()) {
+        CAPTURE(option.name);
+        CHECK(option.is_default(defaults));
+        lie::Settings settings;
+        option.set(settings, option.name, other.at(option.name));
+        CHECK_FALSE(option.is_default(settings));
+        CHECK(option.text(settings) == other.at(option.name));
+        CHECK(run::given_settings(settings, true) == run::RunSettings{{option.name, other.at(option.name)}});
+        CHECK(run::given_settings(settings, false).empty() == option.adaptive);
+        CHECK(run::settings_json(settings, true).member(option.key()) != nullptr);
+    }
+    CHECK(run::without_defaults({{"--tolerance", "1e-10"}, {"--linear-solver", "klu"}, {"--step", "1e-3"}}) ==
+          run::RunSettings{{"--linear-solver", "klu"}, {"--step", "1e-3"}});
+}
+
+TEST_CASE(
+    "every setting is in the help, in summary.json and study.json, and in the identity of a run and of "
+    "shards",
+    "[run][settings]")
+{
+    const Scratch in;
+    const std::string help_of_run = call(in, {"help", "run"}).out,
+                      help_of_fit = call(in, {"help", "fit"}).out;
+    REQUIRE(call(in, {"run", "double_pendulum", "--end", "0.1", "--output", "fixed"}).code == 0);
+    REQUIRE(call(in, {"run", "double_pendulum", "--integrator", "rA-dop853", "--end", "0.1", "--output",
+                      "adaptive"})
+                .code == 0);
+    const std::string fixed = read(in / "fixed/summary.json"), adaptive = read(in / "adaptive/summary.json");
+    const std::vector<std::string> study = {"study", "energy",  "--problem", "double_pendulum", "--end",
+                                            "0.1",   "--steps", "1e-2,5e-3", "--quiet",         "--no-plot"};
+    REQUIRE(call(in, with(study, {"--shard", "1/2", "--output", "s1"})).code == 0);
+    for (const run::SettingOption& option : setting_options()) {
+        CAPTURE(option.name);
+        CHECK_THAT(help_of_run, Contains(option.name));
+        CHECK_THAT(help_of_fit, Contains(option.name));
+        CHECK_THAT(option.adaptive ? adaptive : fixed, Contains('"' + option.key() + '"'));
+        std::vector<std::string> given = {option.name};
+        if (!option.kind.empty()) given.push_back(other.at(option.name));
+        // A resumed run with another value, unless no run with this integrator takes the option
+        const bool refused_here = option.name == "--rho-infinity" || option.name == "--reparametrise";
+        const Ended resumed =
+            call(in, with(option.adaptive ? std::vector<std::string>{"run", "double_pendulum", "--integrator",
+                                                                     "rA-dop853", "--end", "0.2", "--resume",
+                                                                     "--output", "adaptive"}
+                                          : std::vector<std::string>{"run", "double_pendulum", "--end", "0.2",
+                                                                     "--resume", "--output", "fixed"},
+                          given));
+        CHECK(resumed.code == 2);
+        CHECK_THAT(resumed.err, Contains(refused_here ? option.name : "belongs to another run"));
+        if (option.adaptive || refused_here) continue;  // the study has a fixed step and rA schemes
+        fs::remove_all(in / "s2");
+        REQUIRE(call(in, with(with(study, {"--shard", "2/2", "--output", "s2"}), given)).code == 0);
+        const Ended collected = call(in, {"collect", "s1", "s2", "--output", "all", "--no-plot"});
+        CHECK(collected.code == 2);
+        CHECK_THAT(collected.err, Contains("the shards differ in " + option.name));
+    }
+}

@@ -13,7 +13,7 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 add_library(hilda_library SHARED
     $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>
     # Fits need GSL: they are in libhilda_studies.so.
-    "$<FILTER:$<TARGET_OBJECTS:run_objects>,EXCLUDE,fitting>")
+    "$<FILTER:$<TARGET_OBJECTS:run_objects>,EXCLUDE,/run_objects[.]dir/.*fitting[^/]*$|/run_objects[.]dir/fitting/>")
 add_library(hilda::hilda ALIAS hilda_library)
 set_target_properties(hilda_library PROPERTIES
     OUTPUT_NAME hilda
@@ -70,7 +70,7 @@ if(TARGET granular_objects)
         OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
         PRIVATE OpenMP::OpenMP_CXX hilda_granular_loops)
     hilda_component(studies
-        OBJECTS "$<FILTER:$<TARGET_OBJECTS:run_objects>,INCLUDE,fitting>" $<TARGET_OBJECTS:granular_run_objects>
+        OBJECTS "$<FILTER:$<TARGET_OBJECTS:run_objects>,INCLUDE,/run_objects[.]dir/.*fitting[^/]*$|/run_objects[.]dir/fitting/>" $<TARGET_OBJECTS:granular_run_objects>
             $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
         PUBLIC hilda_reference_library hilda_granular_library
         PRIVATE Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})

@@ -49,16 +49,17 @@ struct Trajectory {
     std::vector<State> row;
 };
 
-/// Copies the output rows of a run.
+/// Copies the output rows of a run. The grid must outlive it: a run that ends earlier shortens its grid.
 class TrajectoryRecorder final : public Observer {
 public:
     explicit TrajectoryRecorder(const TimeGrid& grid) : grid(grid) {}
+    explicit TrajectoryRecorder(TimeGrid&& grid) = delete;
     void accepted(const State& node, long n, int iterations) override;
 
     Trajectory trajectory;
 
 private:
-    const TimeGrid grid;
+    const TimeGrid& grid;
     long last = -1;  ///< number of the last row: a node is passed twice after a failure
 };
 

@@ -19,6 +19,7 @@
 #include "run/events/run_events.hpp"
 #include "run/watch/watch.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,17 +39,21 @@ struct SimulationSetup {
     double end = 0, interval = 0;
     std::vector<std::string> dropped_rows = {};     ///< of dae::StartReport: a warning for each
     const dae::Description* description = nullptr;  ///< of a model file: its warnings and its events
-    /// Takes the table of the events of the description; nullptr: the simulation does not look for events
+    /// Takes the table of the events of the description, and outlives the simulation; nullptr: the simulation
+    /// does not look for events
     RunTables* event_table = nullptr;
     /// Instead of the one that the scheme makes; nullptr: none. There are no events with it.
     std::unique_ptr<lie::Integrator> integrator = nullptr;
+    /// Called with each of the warnings() when it is found, also before a refusal
+    std::function<void(const Finding&)> warn = nullptr;
 };
 
 /// How a simulation ended
 struct Outcome {
     /// ok; stopped: by an event, or because the caller stopped it; interrupted; otherwise that of the failure
     std::string status = "ok";
-    std::string message;     ///< of a failure: time, step, scheme, and cause
+    /// Of a failure: time, step, scheme, and cause. With Watch::Action::record the cause alone
+    std::string message;
     std::string detail;      ///< of a failure: constraint, force or contact; may be empty
     std::string cause;       ///< of a failure: what the scheme or the check reports, without time and step
     std::string stopped_by;  ///< name of the event that ended the run
@@ -80,9 +85,9 @@ public:
 
 class Simulation {
 public:
-    /// Makes the integrator and checks, in this order: end and rows, stability and prescribed motions,
-    /// friction that is too soft, rows that were dropped, whether the scheme can have the events of the
-    /// model.
+    /// Makes the integrator and checks, in this order: end and rows, warnings of the model, friction that is
+    /// too soft, rows that were dropped, prescribed motions and stability, whether the scheme can have the
+    /// events of the model. The setup is moved from.
     ///
     /// Throws io::UsageError for a run that cannot be correct (check_run(), why_no_events()), and
     /// lie::InvalidInput if the scheme does not support the model. Model, description and scheme must outlive
@@ -100,49 +105,60 @@ public:
     /// Adds an observer of the nodes that passed the watch.
     void observe_checked(lie::Observer& observer) { checked.push_back(&observer); }
 
-    /// Continues a run at this node.
+    /// Continues a run at this node, before run() or step(). The caller restores the watch, the pivots and
+    /// the contact events of the integrator, and opens events(): see Recorder::open().
     void resume(const lie::State& node, long number, int iterations);
 
-    /// Computes the steps that are left, and passes the nodes to the observers. Exceptions of observers other
-    /// than io::NumericalFailure and lie::Interrupted are thrown on.
-    Outcome run(StepLoop* loop = nullptr);
-    /// Computes one step. Throws as lie::March::advance().
-    void step();
+    /// Computes the steps that are left, and passes the nodes to the observers, each once. After an
+    /// interruption it can be called again; after another end it returns the same outcome.
+    ///
+    /// Exceptions other than io::NumericalFailure, lie::Interrupted and StoppedByEvent, of observers or of
+    /// user code in the model, are thrown on. outcome() then has what was known before. With
+    /// Watch::Action::record the node at the start of a failed step is not passed to the observers.
+    const Outcome& run(StepLoop* loop = nullptr);
+    /// Computes one step. Returns false, without a step, at the end of the grid or after an event that ends
+    /// the run. Throws as lie::March::advance(). run() then computes the steps that are left, and passes the
+    /// last node.
+    bool step();
+    const Outcome& outcome() const { return result; }
 
     const lie::State& state() const { return progress->node(); }
     long number() const { return progress->number(); }
-    /// The grid; its end is that of the run after a stop
-    const lie::TimeGrid& grid() const { return times; }
-    lie::Integrator& integrator() { return *of_scheme; }
-    Watch& watch() { return *checks; }
+    /// The grid; after an event that ends the run its end is there
+    const lie::TimeGrid& grid() const { return grid_of_run; }
+    lie::Integrator& integrator() { return *stepper; }
+    Watch& watch() { return *watch_of_run; }
     RunEvents* events() { return events_of_model.get(); }  ///< nullptr if the run has none
     const lie::March& march() const { return *progress; }
     /// Findings of the watch, and constraints that nearly lost rank
     std::vector<Finding> findings() const;
-    /// Friction that is too soft, and findings(): all about the solution, for callers that report at the end
-    std::vector<Finding> all_findings() const;
+    /// Friction that is too soft, and findings(): what may make the solution wrong
+    std::vector<Finding> findings_of_solution() const;
 
 private:
     void collect_warnings(const SimulationSetup& setup);
     /// of_caller: the integrator is not that of the scheme
     void make_events(const dae::Description& description, RunTables& table, bool of_caller);
-    void list_observers();
-    void advance(StepLoop* loop, Outcome& outcome);
-    void ended_at(const StoppedByEvent& event, Outcome& outcome);
-    void failed(const io::NumericalFailure& failure, Outcome& outcome);
+    void begin();
+    void count();
+    void march_to_end(StepLoop* loop);
+    void ended_at(const StoppedByEvent& event);
+    void failed(const io::NumericalFailure& failure);
 
     const dae::Model& model;
     const lie::Scheme& scheme;
-    lie::TimeGrid times;
+    lie::TimeGrid grid_of_run;
     const lie::Settings settings;
     const Watch::Action action;
-    double setup_seconds = 0;
-    std::unique_ptr<lie::Integrator> of_scheme;
+    std::unique_ptr<lie::Integrator> stepper;
     std::vector<Finding> found;
     std::unique_ptr<RunEvents> events_of_model;
-    std::optional<Watch> checks;
+    std::optional<Watch> watch_of_run;
     std::optional<lie::March> progress;
     std::vector<lie::Observer*> observers, checked, all;
+    Outcome result;
+    bool counted = false, ended = false;
+    double begin_seconds = 0;  ///< CPU time of the thread when run() was called
     /// Number of the last node that the observers received
     class Last final : public lie::Observer {
     public:

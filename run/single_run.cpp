@@ -78,12 +78,12 @@ RunResult SingleRun::execute()
                            .interval = options.interval.value_or(0),
                            .dropped_rows = result.start.dropped,
                            .description = &description,
-                           .event_table = tables.get()});
-    for (const Finding& warning : simulation.warnings()) {
-        warn(warning.text);
-        if (warning.name == "model" || warning.name == "soft_friction")
-            result.warnings.push_back(warning.text);
-    }
+                           .event_table = tables.get(),
+                           .warn = [this](const Finding& warning) {
+                               warn(warning.text);
+                               if (warning.name == "model" || warning.name == "soft_friction")
+                                   result.warnings.push_back(warning.text);
+                           }});
     Recorder recorder({.model = *description.model,
                        .outputs = description.outputs,
                        .model_name = description.name,
@@ -212,15 +212,14 @@ void SingleRun::load_checkpoint()
 
 void SingleRun::check_continues() const
 {
-    // Checkpoints of version 0.2.0 have some settings with their default values.
-    const RunSettings earlier = without_defaults(from->settings);
-    if (earlier != settings) {
+    const RunSettings earlier = with_defaults(from->settings), now = with_defaults(settings);
+    if (earlier != now) {
         std::error_code error;
         const std::string file = path("model.json");
         throw io::UsageError(fmt::format(
             "{}: the checkpoint belongs to another run: {}; --force starts it again", directory,
             difference(
-                earlier, settings,
+                earlier, now,
                 std::filesystem::exists(file, error) ? io::read_file(file, io::JsonSource::max_bytes) : "",
                 text_of_model())));
     }
@@ -281,6 +280,7 @@ public:
     void before_finish(const lie::March& /*march*/) override
     {
         line.clear();
+        run.result.wall_seconds = run.earlier_seconds + seconds(Clock::now() - run.begin);
         if (run.scheme.resumes) run.final_checkpoint = run.checkpoint(simulation, recorder);
         if (run.options.coupling == nullptr) return;
         // The two sides end one after the other. A run that is killed in between continues from here.
@@ -379,7 +379,7 @@ void SingleRun::ended(Simulation& simulation, Recorder& recorder, const Outcome&
     result.statistics = recorder.statistics(outcome.statistics);
     result.t = outcome.t;
     result.stopped_by = outcome.stopped_by;
-    result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
+    if (!(result.wall_seconds > 0)) result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
     if (outcome.status == "interrupted") {
         result.status = outcome.status;
         result.exit_code = io::exit_code::signal + io::Interrupt::caught();

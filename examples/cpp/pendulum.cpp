@@ -60,7 +60,7 @@ int main()
     // more, as `hilda run` does; lie::march() integrates without checks.
     run::Simulation simulation(
         {.model = model, .start = x, .scheme = lie::scheme("rA-half-1-kick"), .grid = grid});
-    lie::TrajectoryRecorder rows(grid);
+    lie::TrajectoryRecorder rows(simulation.grid());
     simulation.observe(rows);
     const run::Outcome outcome = simulation.run();
     if (outcome.failed()) {

@@ -122,7 +122,7 @@ int main()
     const lie::TimeGrid grid = lie::TimeGrid::over(t_end, 1e-4);
     run::Simulation simulation(
         {.model = model, .start = x, .scheme = lie::scheme("rA-half-1-kick"), .grid = grid});
-    lie::TrajectoryRecorder rows(grid);
+    lie::TrajectoryRecorder rows(simulation.grid());
     simulation.observe(rows);
     const run::Outcome outcome = simulation.run();
     if (outcome.failed()) {

@@ -193,7 +193,7 @@ Ended march(run::Simulation& simulation, const PythonObserver* observer)
     run::Outcome& out = ended.outcome;
     try {
         const py::gil_scoped_release release;
-        out = simulation.run(&loop);
+        simulation.run(&loop);
     } catch (const py::error_already_set& error) {
         out.status = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
         ended.error = with_traceback(error);
@@ -201,9 +201,13 @@ Ended march(run::Simulation& simulation, const PythonObserver* observer)
         out.status = "error";
         ended.error = python_error(std::current_exception());
     }
-    if (out.failed() && ended.error.is_none())
+    const std::string of_exception = out.status;
+    out = simulation.outcome();
+    if (!ended.error.is_none() && !out.failed()) out.status = of_exception;
+    if (out.failed() && simulation.outcome().failed())  // also if code in Python raised beyond the failure
         ended.error = numerical_failure(lie::NumericalFailure(out.status, out.cause),
                                         out.message + (out.detail.empty() ? "" : "; " + out.detail));
+    if (out.status == "ok" && observer != nullptr && observer->stopped) out.status = "stopped";
     if (signals.error()) {
         out.status = "interrupted";
         ended.error = with_traceback(*signals.error());

@@ -68,6 +68,7 @@ std::vector<lie::Event> RunEvents::functions()
 
 void RunEvents::open(const std::string& saved, const std::string& file)
 {
+    opened = true;
     if (saved.empty()) return table->open();
     io::Archive a(saved, file);
     transfer(a);

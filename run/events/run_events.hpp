@@ -9,9 +9,11 @@
 #include "run/columns/output_columns.hpp"
 #include "run/tables/run_table.hpp"
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hilda::lie {
@@ -28,7 +30,10 @@ struct EventCount {
 };
 
 /// Thrown by RunEvents::accepted(): an event with the action stop was found before this node.
-struct StoppedByEvent {
+struct StoppedByEvent : std::exception {
+    StoppedByEvent(std::string event, lie::State x) : event(std::move(event)), x(std::move(x)) {}
+    const char* what() const noexcept override { return "stopped by an event"; }
+
     std::string event;
     lie::State x;  ///< at the event
 };
@@ -49,6 +54,7 @@ public:
 
     /// Creates the table, or continues it from the result of save().
     void open(const std::string& saved, const std::string& file);
+    bool is_open() const { return opened; }
     /// Synchronises the table with the disk and returns what a resumed run needs.
     std::string save();
     /// Throws StoppedByEvent.
@@ -73,6 +79,7 @@ private:
     std::unique_ptr<RunTable> table;
     std::vector<double> row;
     std::vector<EventCount> counted;
+    bool opened = false;
 };
 
 }  // namespace hilda::run

@@ -135,7 +135,7 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
             error = std::max(error, std::abs(sum - other));
         }
     }
-    for (const Finding& found : simulation.all_findings()) samples.warnings.push_back(found.text);
+    for (const Finding& found : simulation.findings_of_solution()) samples.warnings.push_back(found.text);
     return samples;
 }
 

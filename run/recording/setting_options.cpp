@@ -105,12 +105,10 @@ RunSettings given_settings(const lie::Settings& settings, bool adaptive)
     return given;
 }
 
-RunSettings without_defaults(RunSettings settings)
+RunSettings with_defaults(RunSettings settings)
 {
     for (const SettingOption& option : setting_options())
-        if (const auto at = settings.find(option.name);
-            at != settings.end() && !option.kind.empty() && at->second == option.text({}))
-            settings.erase(at);
+        if (!option.kind.empty()) settings.try_emplace(option.name, option.text({}));
     return settings;
 }
 

@@ -36,8 +36,8 @@ const std::vector<SettingOption>& setting_options();
 
 /// The settings that are not the defaults, by option: what checkpoints and the jobs of a study record
 RunSettings given_settings(const lie::Settings& settings, bool adaptive);
-/// The same settings without those that have their default values
-RunSettings without_defaults(RunSettings settings);
+/// The settings of a run with the default values of the options that are not among them, for comparisons
+RunSettings with_defaults(RunSettings settings);
 /// All settings with their values, by key; those of adaptive steps only for such a run
 io::Json settings_json(const lie::Settings& settings, bool adaptive);
 

@@ -222,12 +222,13 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
              .settings = settings,
              .watch = is_coarser ? run::Watch::Action::record : run::Watch::Action::stop,
              .accept_unstable = is_coarser || options.force});
-        lie::TrajectoryRecorder rows(grid);
+        lie::TrajectoryRecorder rows(simulation.grid());
         simulation.observe(rows);
         const run::Outcome outcome = simulation.run();
+        if (outcome.status == "interrupted") throw lie::Interrupted();
         if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
         if (!is_coarser && !options.quiet)
-            for (const run::Finding& found : simulation.all_findings())
+            for (const run::Finding& found : simulation.findings_of_solution())
                 io::warning(
                     fmt::format("the reference {} of {}: {}", reference.name, c.problem.name, found.text));
         return std::move(rows.trajectory);

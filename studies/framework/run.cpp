@@ -49,13 +49,18 @@ void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* con
         run.status = outcome.status;
         run.message = outcome.cause;
         run.statistics = outcome.statistics;
-        for (const run::Finding& found : simulation.all_findings())
+        for (const run::Finding& found : simulation.findings_of_solution())
             run.findings += found.name + ": " + found.text + '\n';
         run.seconds = outcome.setup_seconds + outcome.step_seconds;
+        return;
+    } catch (const lie::NumericalFailure& failure) {  // of the start
+        run.status = failure.status, run.message = failure.what();
     } catch (const lie::InvalidInput& refused) {  // the scheme does not support this model
         run.status = "refused", run.message = refused.what();
-        run.seconds = run::thread_seconds() - begin;
+    } catch (const io::UsageError& refused) {  // the run cannot be correct: see run::check_run()
+        run.status = "refused", run.message = refused.what();
     }
+    run.seconds = run::thread_seconds() - begin;
 }
 
 namespace {

@@ -89,7 +89,7 @@ TEST_CASE("a simulation from C++ refuses a step above the stability limit of a s
     REQUIRE(accepted.warnings().size() == 1);
     CHECK(accepted.warnings()[0].name == "unstable_step");
     CHECK(accepted.warnings()[0].text.find("'spring'") != std::string::npos);
-    // lie::march() takes it from 50 J to more than 1e8 J without a word.
+    // lie::march() takes it from 50 J to more than 1e8 J without a warning.
     const Outcome outcome = accepted.run();
     CHECK(outcome.failed());
 }
@@ -100,7 +100,7 @@ TEST_CASE("a simulation gives the nodes of lie::march, and counts its steps", "[
     const lie::Scheme& scheme = lie::scheme("rA-half-1-kick");
     const lie::TimeGrid grid = lie::TimeGrid::over(0.1, 1e-4, 1e-2);
     Simulation simulation({.model = of.model, .start = of.x, .scheme = scheme, .grid = grid});
-    lie::TrajectoryRecorder rows(grid);
+    lie::TrajectoryRecorder rows(simulation.grid());
     simulation.observe(rows);
     const Outcome outcome = simulation.run();
     CHECK(outcome.status == "ok");
@@ -175,4 +175,67 @@ TEST_CASE("a failure has its time, its scheme and its cause, and each node is pa
     const Outcome half_turn = turning.run();
     CHECK(half_turn.status == "step_too_large");
     CHECK(nodes.number == std::vector<long>{0});
+}
+
+TEST_CASE("steps and a run give the nodes of a run, each once, and a second run gives the same outcome",
+          "[run][simulation]")
+{
+    const Oscillator of;
+    const auto setup = [&] {
+        return run::SimulationSetup{.model = of.model,
+                                    .start = of.x,
+                                    .scheme = lie::scheme("rA-half-1-kick"),
+                                    .grid = lie::TimeGrid::over(1e-3, 1e-4)};
+    };
+    Simulation whole(setup()), in_steps(setup());
+    Nodes of_whole, of_steps;
+    whole.observe(of_whole);
+    in_steps.observe(of_steps);
+    CHECK(whole.run().status == "ok");
+    while (in_steps.step()) {
+    }
+    CHECK(in_steps.number() == 10);
+    CHECK(of_steps.number.back() == 9);
+    CHECK(in_steps.run().status == "ok");
+    CHECK(of_steps.number == of_whole.number);
+    CHECK(in_steps.state().body[0].r == whole.state().body[0].r);
+    CHECK(whole.outcome().statistics.steps == 10);
+    CHECK(whole.run().statistics.steps == 10);
+    CHECK_FALSE(whole.step());
+    CHECK(of_whole.number == std::vector<long>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+
+    // An interrupted run continues; a run that was stopped does not.
+    using Next = run::StepLoop::Next;
+    Simulation interrupted(setup()), stopped(setup());
+    Nodes of_interrupted, of_stopped;
+    interrupted.observe(of_interrupted);
+    stopped.observe(of_stopped);
+    StopAt interrupt(5, Next::interrupt), stop(5, Next::stop);
+    CHECK(interrupted.run(&interrupt).status == "interrupted");
+    CHECK(interrupted.run().status == "ok");
+    CHECK(of_interrupted.number == of_whole.number);
+    CHECK(interrupted.state().body[0].r == whole.state().body[0].r);
+    CHECK(stopped.run(&stop).status == "stopped");
+    CHECK(stopped.run().status == "stopped");
+    CHECK(of_stopped.number == std::vector<long>{0, 1, 2, 3, 4, 5});
+}
+
+TEST_CASE("an exception that is no failure of the simulation is thrown on, with the outcome so far",
+          "[run][simulation]")
+{
+    struct Full final : lie::Observer {
+        void accepted(const lie::State& /*x*/, long n, int /*iterations*/) override
+        {
+            if (n == 3) throw io::IoError("the disk is full");
+        }
+    } full;
+    const Oscillator of;
+    Simulation simulation({.model = of.model,
+                           .start = of.x,
+                           .scheme = lie::scheme("rA-half-1-kick"),
+                           .grid = lie::TimeGrid::over(1e-3, 1e-4)});
+    simulation.observe(full);
+    CHECK_THROWS_AS(simulation.run(), io::IoError);
+    CHECK_FALSE(simulation.outcome().failed());
+    CHECK(simulation.outcome().t == Approx(3e-4));
 }

@@ -107,3 +107,15 @@ TEST_CASE("an option that a study does not use is rejected", "[studies][member]"
     refused({"energy", "--steps", "7e-3"}, "must divide the end of double_pendulum, 30 s, got 0.007");
     CHECK_FALSE(fs::exists(in / "out/scaling"));
 }
+
+TEST_CASE("a run that a scheme cannot do is refused in its row, and the others are computed",
+          "[studies][run]")
+{
+    const Scratch in;
+    const Ended ended =
+        call(in, {"study", "compare", "--problem", "rolling_ball", "--integrator", "ida-rp,rA-half-1-kick",
+                  "--steps", "1e-4", "--end", "0.01", "--no-plot", "--output", "a"});
+    CHECK(ended.code == 0);
+    CHECK_THAT(ended.out, Contains("ida-rp on rolling_ball") && Contains("refused"));
+    CHECK(fs::exists(in / "a/study.json"));
+}

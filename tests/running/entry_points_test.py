@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A run is checked alike whoever starts it: the program, Python, a study, a reference solution, a sweep and a fit report the
+"""A run is checked alike however it is started: the program, Python, a study, a reference solution, a sweep and a fit report the
 same findings, and refuse the same step. tests/running/simulation_test.cpp has the same for C++."""
 
 import json
@@ -34,7 +34,7 @@ def without_numbers(text):
     return re.sub(r"[0-9.]+(e[+-]?[0-9]+)?", "N", text)
 
 
-class Doors(unittest.TestCase):
+class EntryPoints(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -55,7 +55,7 @@ class Doors(unittest.TestCase):
         return [line.split(": ", 1)[1] for run in self.results(output, "study.json")["runs"] for line in run.get("warnings", [])]
 
     def check_found(self, model, integrator, step, finding):
-        """Each door reports the finding of `hilda run`, which contains this text, of 300 steps without rows, as in a study."""
+        """Each entry point reports the finding of `hilda run`, which contains this text, of 300 steps without rows, as in a study."""
         end = round(300 * step, 9)
         options = ("--integrator", integrator, "--end", str(end))
         ended = self.call("run", model, *options, "--step", str(step), "--interval", str(end), "--output", "run")

@@ -20,8 +20,8 @@
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/sphere.hpp"
 #include "lie/solver/linear_solver.hpp"
-#include "run/simulation.hpp"
 #include "reference/motions/ball_in_bowl.hpp"
+#include "run/simulation.hpp"
 
 #include <fmt/format.h>
 

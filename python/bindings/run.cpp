@@ -13,6 +13,7 @@
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
 #include "run/columns/output_columns.hpp"
+#include "run/recording/setting_options.hpp"
 #include "run/simulation.hpp"
 #include "run/watch/run_check.hpp"
 #include "studies/framework/study.hpp"
@@ -318,6 +319,9 @@ py::dict run(const ModelPointer& model, const Options& options)
 void define_run(py::module_& m)
 {
     m.attr("default_integrator") = run::default_integrator;
+    py::list names;
+    for (const run::SettingOption& option : run::setting_options()) names.append(option.key());
+    m.attr("setting_names") = names;
     m.def(
         "_run",
         [](const ModelPointer& model, py::object integrator, std::optional<double> end,

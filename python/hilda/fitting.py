@@ -139,7 +139,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         jobs: number of concurrent runs.
         max_fit_iterations: largest number of iterations of the fit.
         step: step [s] of an integrator with fixed steps.
-        **settings: rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity of Model.run().
+        **settings: rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity, reparametrise of Model.run().
 
     The minimum is that of Levenberg and Marquardt's method in a trust region. Ctrl-C ends the fit.
 
@@ -150,7 +150,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
     """
     if isinstance(source, Model):
         raise UsageError("fit: needs the name, the path or the content of a model, whose entries it changes; got a Model")
-    known = {"rtol", "atol", "tolerance", "max_iterations", "linear_solver", "rho_infinity"}
+    known = _hilda.setting_names
     if unknown := [key for key in settings if key not in known]:
         raise UsageError(f"fit: unknown keys {', '.join(unknown)}; known settings are {', '.join(sorted(known))}")
     if jobs < 1 or max_fit_iterations < 1:
@@ -165,7 +165,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         if not directory and _hilda._is_path(name):
             directory = os.path.dirname(name)
     changes = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
-    chosen = {key.replace("_", "-"): str(value) for key, value in settings.items() if value is not None}
+    chosen = {key.replace("_", "-"): str(value) for key, value in settings.items() if value not in (None, False)}
     outcome = _hilda._fit(name, text, directory, changes, [_parameter(*item) for item in parameters.items()], origin, t, names,
                           values, _sigma(sigma, names), integrator, step, chosen, fix_initial, max_fit_iterations, jobs)
     result = Fit(outcome, list(parameters), t, names, values, directory)

@@ -218,8 +218,8 @@ class Model:
     def run(self, integrator: str | type[Integrator] = _hilda.default_integrator, *, end: float | None = None,
             step: float | None = None, interval: float | None = None, rtol: float | None = None,
             atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
-            linear_solver: str | None = None, rho_infinity: float | None = None, reactions: bool = False,
-            columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
+            linear_solver: str | None = None, rho_infinity: float | None = None, reparametrise: bool = False,
+            reactions: bool = False, columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
         """Integrates the model and returns a Result.
 
         Args:
@@ -232,6 +232,8 @@ class Model:
             tolerance, max_iterations: of Newton's method; default 1e-10 and 30.
             linear_solver: "auto", the default, "klu" or "condensed".
             rho_infinity: numerical damping from 0 to 1, default 0.8, of integrators that have it.
+            reparametrise: change the body frame when Euler angles approach a singular orientation, instead of
+                stopping.
             reactions: store the constraint forces and torques on each body.
             columns: names of further columns (hilda help outputs), such as "spring.force"; "forces", "contacts" and
                 "outputs" stand for all columns of these groups.
@@ -257,7 +259,8 @@ class Model:
         else:
             raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
         settings = {"tolerance": tolerance, "max-iterations": max_iterations, "linear-solver": linear_solver,
-                    "rho-infinity": rho_infinity, "rtol": rtol, "atol": atol}
+                    "rho-infinity": rho_infinity, "rtol": rtol, "atol": atol,
+                    "reparametrise": "" if reparametrise else None}
         outcome = _hilda._run(core, used, end, step, interval,
                               {name: str(value) for name, value in settings.items() if value is not None},
                               reactions, force, [columns] if isinstance(columns, str) else list(columns), observer)

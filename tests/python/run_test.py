@@ -2,6 +2,7 @@
 """Runs in Python: the numbers of the program, observers, failures, interruptions, threads."""
 
 import csv
+import inspect
 import os
 import pickle
 import signal
@@ -15,8 +16,22 @@ import unittest
 import numpy as np
 
 import hilda
+from hilda import _hilda
 
 PROGRAM = os.environ["HILDA_PROGRAM"]
+
+
+class Settings(unittest.TestCase):
+    def test_each_setting_of_the_program_is_a_keyword(self):
+        keywords = inspect.signature(hilda.Model.run).parameters
+        self.assertEqual([name for name in _hilda.setting_names if name not in keywords], [])
+        self.assertIn("reparametrise", _hilda.setting_names)
+
+    def test_euler_angles_at_a_singular_orientation(self):
+        # the Euler angle phi of the crank is 0 at 0.236 s
+        with self.assertRaisesRegex(hilda.NumericalFailure, "singular"):
+            hilda.run("slider_crank", "reps-half-1", end=0.5)
+        self.assertEqual(hilda.run("slider_crank", "reps-half-1", end=0.5, reparametrise=True).status, "ok")
 
 
 class Rows(unittest.TestCase):

@@ -9,11 +9,13 @@ set(hilda_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/hilda")
 # The Debian packages (package.cmake): libraries, programs, python, doc, and dev for everything else
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 
+# The objects of fits, which need GSL: they are in libhilda_studies.so.
+set(hilda_fits "/run_objects[.]dir/.*fitting[^/]*$|/run_objects[.]dir/fitting/")
+
 # The target is not named `hilda`, the name of the program in the build folder.
 add_library(hilda_library SHARED
     $<TARGET_OBJECTS:io_objects> $<TARGET_OBJECTS:lie_objects> $<TARGET_OBJECTS:dae_objects> $<TARGET_OBJECTS:contact_objects>
-    # Fits need GSL: they are in libhilda_studies.so.
-    "$<FILTER:$<TARGET_OBJECTS:run_objects>,EXCLUDE,/run_objects[.]dir/.*fitting[^/]*$|/run_objects[.]dir/fitting/>")
+    "$<FILTER:$<TARGET_OBJECTS:run_objects>,EXCLUDE,${hilda_fits}>")
 add_library(hilda::hilda ALIAS hilda_library)
 set_target_properties(hilda_library PROPERTIES
     OUTPUT_NAME hilda
@@ -70,7 +72,7 @@ if(TARGET granular_objects)
         OBJECTS $<TARGET_OBJECTS:granular_objects> $<TARGET_OBJECTS:granular_no_gpu>
         PRIVATE OpenMP::OpenMP_CXX hilda_granular_loops)
     hilda_component(studies
-        OBJECTS "$<FILTER:$<TARGET_OBJECTS:run_objects>,INCLUDE,/run_objects[.]dir/.*fitting[^/]*$|/run_objects[.]dir/fitting/>" $<TARGET_OBJECTS:granular_run_objects>
+        OBJECTS "$<FILTER:$<TARGET_OBJECTS:run_objects>,INCLUDE,${hilda_fits}>" $<TARGET_OBJECTS:granular_run_objects>
             $<TARGET_OBJECTS:studies_objects> $<TARGET_OBJECTS:granular_study_objects>
         PUBLIC hilda_reference_library hilda_granular_library
         PRIVATE Threads::Threads OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})

@@ -129,8 +129,7 @@ void March::finish(std::span<Observer* const> observers)
 
 void TrajectoryRecorder::accepted(const State& node, long n, int /*iterations*/)
 {
-    if (!grid.is_row(n) || n <= last) return;
-    last = n;
+    if (!grid.is_row(n)) return;
     trajectory.row.push_back({.t = node.t,
                               .body = node.body,
                               .alpha = node.alpha,

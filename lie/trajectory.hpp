@@ -60,7 +60,6 @@ public:
 
 private:
     const TimeGrid& grid;
-    long last = -1;  ///< number of the last row: a node is passed twice after a failure
 };
 
 /// A time integration in progress. It holds the current node; a run can be saved between two steps and

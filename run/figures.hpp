@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Files of figures. The program draws them, with scripts in Python: see program/plot.hpp.
+/// Files of figures. The program draws them, with scripts in Python: see studies/program/plot.hpp.
 
 #pragma once
 

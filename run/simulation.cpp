@@ -83,7 +83,7 @@ void Simulation::begin()
 bool Simulation::step()
 {
     if (ended || progress->number() >= grid_of_run.steps) return false;
-    if (all.size() != observers.size() + checked.size() + (events_of_model ? 3 : 2)) begin();
+    if (all.empty()) begin();
     try {
         progress->advance(all);
     } catch (const StoppedByEvent& event) {
@@ -162,20 +162,15 @@ void Simulation::ended_at(const StoppedByEvent& event)
         for (lie::Observer* observer : observers)
             observer->accepted(event.x, progress->number(), progress->iterations_of_last_step());
     } catch (const io::NumericalFailure& failure) {
-        result.status = failure.status;
-        result.cause = result.message = failure.what();
+        report(failure);
     }
 }
 
 void Simulation::failed(const io::NumericalFailure& failure)
 {
     ended = true;
-    result.status = failure.status;
-    result.cause = result.message = failure.what();
-    if (action == Watch::Action::record) return;
-    const Diagnosis d = diagnose(failure, model, progress->node(), progress->number(), grid_of_run.h, scheme);
-    result.message = d.what, result.detail = d.detail;
-    if (last.number == progress->number()) return;
+    report(failure);
+    if (action == Watch::Action::record || last.number == progress->number()) return;
     // The start node of the failed step is the last valid node, and may be an output row. The status stays
     // that of the step if a check of this node fails as well. The run is complete if it ends at an event
     // before this node.
@@ -186,6 +181,21 @@ void Simulation::failed(const io::NumericalFailure& failure)
         ended_at(event);
     } catch (const io::NumericalFailure&) {
     }
+}
+
+void Simulation::report(const io::NumericalFailure& failure)
+{
+    result.status = failure.status;
+    result.cause = result.message = failure.what();
+    if (action == Watch::Action::record) return;
+    const Diagnosis d = diagnose(failure, model, progress->node(), progress->number(), grid_of_run.h, scheme);
+    result.message = d.what, result.detail = d.detail;
+}
+
+void Outcome::throw_failure() const
+{
+    if (status == "interrupted") throw lie::Interrupted();
+    if (failed()) throw io::NumericalFailure(status, cause);
 }
 
 std::vector<Finding> Simulation::findings_of_solution() const

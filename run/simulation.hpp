@@ -63,6 +63,8 @@ struct Outcome {
     double setup_seconds = 0, step_seconds = 0;
 
     bool failed() const { return status != "ok" && status != "stopped" && status != "interrupted"; }
+    /// Throws lie::Interrupted or io::NumericalFailure, with the cause, if the run did not reach its end.
+    void throw_failure() const;
 };
 
 /// What a caller does between the steps of a simulation
@@ -101,9 +103,9 @@ public:
 
     /// Adds an observer, after the events and before the watch: it also receives a node at which the watch
     /// ends the run, and the state of an event that ends it.
-    void observe(lie::Observer& observer) { observers.push_back(&observer); }
+    void observe(lie::Observer& observer) { observers.push_back(&observer), all.clear(); }
     /// Adds an observer of the nodes that passed the watch.
-    void observe_checked(lie::Observer& observer) { checked.push_back(&observer); }
+    void observe_checked(lie::Observer& observer) { checked.push_back(&observer), all.clear(); }
 
     /// Continues a run at this node, before run() or step(). The caller restores the watch, the pivots and
     /// the contact events of the integrator, and opens events(): see Recorder::open().
@@ -144,6 +146,7 @@ private:
     void march_to_end(StepLoop* loop);
     void ended_at(const StoppedByEvent& event);
     void failed(const io::NumericalFailure& failure);
+    void report(const io::NumericalFailure& failure);
 
     const dae::Model& model;
     const lie::Scheme& scheme;
@@ -155,7 +158,8 @@ private:
     std::unique_ptr<RunEvents> events_of_model;
     std::optional<Watch> watch_of_run;
     std::optional<lie::March> progress;
-    std::vector<lie::Observer*> observers, checked, all;
+    std::vector<lie::Observer*> observers, checked;
+    std::vector<lie::Observer*> all;  ///< in the order of their calls; empty: to be listed by begin()
     Outcome result;
     bool counted = false, ended = false;
     double begin_seconds = 0;  ///< CPU time of the thread when run() was called

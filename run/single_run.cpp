@@ -96,10 +96,11 @@ RunResult SingleRun::execute()
                        .coupling = options.coupling},
                       simulation.integrator(), simulation.watch());
     for (lie::Observer* observer : recorder.observers()) simulation.observe(*observer);
-    if (options.error)
-        refined = std::make_unique<RefinedRuns>(*description.model, description.x, scheme,
-                                                integrator_settings, grid);
-    if (refined) simulation.observe_checked(*refined);
+    std::optional<RefinedRuns> refined;
+    if (options.error) {
+        refined.emplace(*description.model, description.x, scheme, integrator_settings, grid);
+        simulation.observe_checked(*refined);
+    }
     lock.create();
     if (!from) clear_directory();
     remove_figure(directory, "trajectory.png");  // of the shorter run, if this one continues it
@@ -107,7 +108,8 @@ RunResult SingleRun::execute()
     march(simulation, recorder);
     if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&simulation.integrator()))
         for (const contact::ContactEvent& e : unilateral->events())
-            if (e.t <= last_node)  // excludes the additional step beyond the end that fills the last node
+            if (e.t <=
+                simulation.state().t)  // excludes the additional step beyond the end that fills the last node
                 result.events.push_back(
                     {e.t, description.model->general_constraints()[static_cast<size_t>(e.contact)]->name,
                      event_name(e.type), e.speed});
@@ -317,13 +319,11 @@ void SingleRun::march(Simulation& simulation, Recorder& recorder)
     // at any time.
     if (extends) std::remove(path("summary.json").c_str());
     if (extends || (options.checkpoint > 0 && !from)) save_checkpoint(simulation, recorder);
-    Outcome outcome;
     {
         Loop loop(*this, simulation, recorder);
-        outcome = simulation.run(&loop);
+        simulation.run(&loop);
     }
-    ended(simulation, recorder, outcome);
-    last_node = simulation.state().t;
+    ended(simulation, recorder);
     result.invariants = recorder.invariants;
     recorder.close();
     if (events != nullptr) {
@@ -373,9 +373,9 @@ void SingleRun::check_contacts()
 }
 
 /// Records how the simulation ended.
-void SingleRun::ended(Simulation& simulation, Recorder& recorder, const Outcome& outcome)
+void SingleRun::ended(Simulation& simulation, Recorder& recorder)
 {
-    grid = simulation.grid();
+    const Outcome& outcome = simulation.outcome();
     result.statistics = recorder.statistics(outcome.statistics);
     result.t = outcome.t;
     result.stopped_by = outcome.stopped_by;

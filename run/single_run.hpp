@@ -49,7 +49,7 @@ private:
     std::string text_of_model() const;
     class Loop;
     void march(Simulation& simulation, Recorder& recorder);
-    void ended(Simulation& simulation, Recorder& recorder, const Outcome& outcome);
+    void ended(Simulation& simulation, Recorder& recorder);
     std::string checkpoint(Simulation& simulation, Recorder& recorder) const;
     void save_checkpoint(Simulation& simulation, Recorder& recorder);
     void add_warning(const std::string& what);
@@ -69,8 +69,6 @@ private:
     bool extends = false;  ///< continues a run that has ended
     std::string
         final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
-    std::unique_ptr<RefinedRuns> refined;  ///< of --error
-    double last_node = 0;                  ///< time of the last accepted node [s]
     Clock::time_point begin;
     double earlier_seconds = 0;  ///< wall time before the checkpoint [s]
     RunResult result;

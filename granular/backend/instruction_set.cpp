@@ -91,6 +91,16 @@ const InstructionSet& instruction_set()
 
 const InstructionSet* chosen_instruction_set() { return chosen.load(std::memory_order_acquire); }
 
+std::string described_instruction_set()
+{
+    try {
+        const InstructionSet& set = instruction_set();
+        return std::string(set.name) + " (" + set.description + ")";
+    } catch (const io::Failure& wrong) {
+        return wrong.what();
+    }
+}
+
 void choose_instruction_set(const std::string& name, const std::string& origin)
 {
     chosen.store(&named(name, origin), std::memory_order_release);

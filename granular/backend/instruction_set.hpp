@@ -34,6 +34,10 @@ const InstructionSet* chosen_instruction_set();
 /// not; the messages list what there is.
 void choose_instruction_set(const std::string& name, const std::string& origin = "--isa");
 
+/// Name and description of instruction_set(), or what is wrong with HILDA_ISA: for descriptions of the
+/// program, which a report of a defect contains
+std::string described_instruction_set();
+
 /// The loops of instruction_set()
 inline const CpuLoops& cpu_loops() { return *instruction_set().loops(); }
 

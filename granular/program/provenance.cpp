@@ -3,7 +3,6 @@
 
 #include "granular/backend/instruction_set.hpp"
 #include "granular/build.hpp"
-#include "io/error.hpp"
 #include "io/provenance.hpp"
 
 #if __has_include(<hilda/version.hpp>)
@@ -36,15 +35,8 @@ std::string build_line()
     std::string sets;
     for (const InstructionSet& set : instruction_sets())
         sets += (sets.empty() ? "" : ", ") + std::string(set.name);
-    std::string chosen;
-    try {
-        const InstructionSet& set = instruction_set();
-        chosen = std::string(set.name) + " (" + set.description + ")";
-    } catch (const io::Failure& wrong) {  // HILDA_ISA
-        chosen = wrong.what();
-    }
     return std::string("build: ") + build::compiler + ", " + build::flags +
-           "\nvector instructions: " + chosen + ", of " + sets + "\ndevices: CPU" +
+           "\nvector instructions: " + described_instruction_set() + ", of " + sets + "\ndevices: CPU" +
            (*build::cuda != '\0' ? std::string(", CUDA ") + build::cuda : "; built without CUDA");
 }
 

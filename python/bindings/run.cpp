@@ -185,35 +185,36 @@ private:
     const PythonObserver* const observer;
 };
 
-/// Exceptions of Python code - observers, forces, integrators - are not failures of the simulation.
+/// Exceptions of Python code - observers, forces, integrators - are not failures of the simulation. They do
+/// not replace one: code beyond the failure may have raised them.
 Ended march(run::Simulation& simulation, const PythonObserver* observer)
 {
     Ended ended;
     Signals signals;
     PythonLoop loop(signals, observer);
-    run::Outcome& out = ended.outcome;
+    std::string raised;  // status of an exception
     try {
         const py::gil_scoped_release release;
         simulation.run(&loop);
     } catch (const py::error_already_set& error) {
-        out.status = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
+        raised = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
         ended.error = with_traceback(error);
     } catch (const std::exception&) {
-        out.status = "error";
+        raised = "error";
         ended.error = python_error(std::current_exception());
     }
-    const std::string of_exception = out.status;
-    out = simulation.outcome();
-    if (!ended.error.is_none() && !out.failed()) out.status = of_exception;
-    if (out.failed() && simulation.outcome().failed())  // also if code in Python raised beyond the failure
+    run::Outcome& out = ended.outcome = simulation.outcome();
+    if (out.failed())
         ended.error = numerical_failure(lie::NumericalFailure(out.status, out.cause),
                                         out.message + (out.detail.empty() ? "" : "; " + out.detail));
-    if (out.status == "ok" && observer != nullptr && observer->stopped) out.status = "stopped";
+    else if (!raised.empty())
+        out.status = raised;
+    else if (out.status == "ok" && observer != nullptr && observer->stopped)
+        out.status = "stopped";
     if (signals.error()) {
         out.status = "interrupted";
         ended.error = with_traceback(*signals.error());
     }
-    if (out.stopped_by.empty()) out.t = simulation.state().t;
     return ended;
 }
 
@@ -307,8 +308,7 @@ py::dict run(const ModelPointer& model, const Options& options)
     result["t_end"] = out.t;
     result["integrator"] = scheme->name;
     result["step"] = scheme->adaptive ? py::object(py::none()) : py::object(py::float_(simulation.grid().h));
-    result["statistics"] =
-        counters(out.statistics.steps > 0 ? out.statistics : simulation.integrator().statistics());
+    result["statistics"] = counters(out.statistics);
     result["constraint_norm"] = rows.constraint_norm;
     result["warnings"] = warnings;
     return result;

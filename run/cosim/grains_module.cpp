@@ -12,10 +12,6 @@ extern "C" const hilda::run::GrainFunctions* hilda_grain_functions()
         .run_cosim = run::run_cosim,
         .check_cosim = run::check_cosim,
         .law_names = [](const std::string& kind) { return granular::law_names(kind); },
-        .vector_instructions =
-            [] {
-                const granular::InstructionSet& set = granular::instruction_set();
-                return std::string(set.name) + " (" + set.description + ")";
-            }};
+        .vector_instructions = granular::described_instruction_set};
     return &functions;
 }

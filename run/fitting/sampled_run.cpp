@@ -98,9 +98,7 @@ Samples sample(dae::Description& model, const std::vector<std::string>& columns,
     ObservedColumns observed(system, model.outputs, "fit", columns);
     Nodes nodes(observed, columns.size(), static_cast<size_t>(grid.steps) + 1, system, options.settings.stop);
     simulation.observe(nodes);
-    const Outcome outcome = simulation.run();
-    if (outcome.status == "interrupted") throw lie::Interrupted();
-    if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
+    simulation.run().throw_failure();
 
     Samples samples{.values = Eigen::MatrixXd(static_cast<Eigen::Index>(t.size()),
                                               static_cast<Eigen::Index>(columns.size())),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Sinks of a run of a model. A new output format is one file in studies/running/sinks.
+/// Sinks of a run of a model. A new output format is one file in run/sinks.
 
 #pragma once
 

@@ -224,9 +224,7 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
              .accept_unstable = is_coarser || options.force});
         lie::TrajectoryRecorder rows(simulation.grid());
         simulation.observe(rows);
-        const run::Outcome outcome = simulation.run();
-        if (outcome.status == "interrupted") throw lie::Interrupted();
-        if (outcome.failed()) throw lie::NumericalFailure(outcome.status, outcome.cause);
+        simulation.run().throw_failure();
         if (!is_coarser && !options.quiet)
             for (const run::Finding& found : simulation.findings_of_solution())
                 io::warning(

@@ -33,10 +33,10 @@ lie::Settings settings_of(const Run& run, const lie::Settings& of_study)
 void march(Run& run, const lie::Settings& of_study, std::span<lie::Observer* const> observers)
 {
     const dae::Description& d = *run.c->started;
-    lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
-    grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
     const double begin = run::thread_seconds();
     try {
+        lie::TimeGrid grid = lie::TimeGrid::over(run.c->end, run.h);
+        grid.interval = std::max(1L, grid.steps);  // no rows: the energy is evaluated at every 16th node
         run::Simulation simulation({.model = *d.model,
                                     .start = d.x,
                                     .scheme = *run.scheme,

@@ -30,7 +30,7 @@ using run::relative_tolerance;
 std::string preset(const std::string& option, const std::string& text);
 /// tangent or fixed-xy
 std::string normal_rows(const std::string& option, const std::string& text);
-/// Formats of figures NAME,NAME,...: those of figure_formats() in running/figures.hpp, each once
+/// Formats of figures NAME,NAME,...: those of figure_formats() in run/figures.hpp, each once
 std::vector<std::string> formats_of_figures(const std::string& option, const std::string& text);
 /// A number of frames, from 1 to Snapshots::max_frames
 int frames(const std::string& option, const std::string& text);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/info.hpp"
 
-#include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/provenance.hpp"
@@ -44,12 +43,8 @@ int info(bool json, const std::string& command_line)
     const std::string figures = python_and_matplotlib();
     all["figures"] = figures;
     const run::GrainFunctions* const of_grains = run::find_grains("info");
-    std::string vectors = "the module hilda-grains was not built";
-    try {
-        if (of_grains != nullptr) vectors = of_grains->vector_instructions();
-    } catch (const io::Failure& wrong) {  // HILDA_ISA
-        vectors = wrong.what();
-    }
+    const std::string vectors =
+        of_grains != nullptr ? of_grains->vector_instructions() : "the module hilda-grains was not built";
     all["vector_instructions_of_grains"] = vectors;
     if (json) {
         std::cout << all.text();

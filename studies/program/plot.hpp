@@ -12,7 +12,7 @@ namespace hilda::studies {
 
 /// Formats and contents of figures
 struct FigureOptions {
-    std::vector<std::string> formats = {};  ///< of figure_formats() in running/figures.hpp; empty: png
+    std::vector<std::string> formats = {};  ///< of figure_formats() in run/figures.hpp; empty: png
     std::vector<std::string> integrators =
         {};  ///< the curves to show; empty: the choice of the script, at most eight
     std::vector<std::string> quantities = {};  ///< the panels to show; empty: all that have values
@@ -27,7 +27,7 @@ struct FigureOptions {
 std::optional<std::vector<std::string>> plot(const std::string& script, const std::string& directory,
                                              const FigureOptions& options = {});
 
-/// The same as a DrawFigures, see running/figures.hpp
+/// The same as a DrawFigures, see run/figures.hpp
 std::vector<std::string> draw_figures(const std::string& script, const std::string& directory,
                                       const std::vector<std::string>& formats);
 

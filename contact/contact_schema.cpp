@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Definitions of the registered surfaces, normal laws and friction laws in the schema of model files.
+/// The selection among the registered surfaces, normal laws and friction laws in the schema of model files.
+#include "contact/contact_types.hpp"
 
 #include "contact/friction/friction.hpp"
 #include "contact/normal/normal_law.hpp"
@@ -16,8 +17,10 @@ namespace {
 struct Group {
     std::string name;         ///< of the definition: "surface"
     dae::TypeKind kind;       ///< its key is the one that selects
+    std::string description;  ///< of the definition
+    io::Json key;             ///< schema of the key that selects
     std::string prefix = {};  ///< of the names of the definitions of the types
-    /// Further values of the key, with a definition of the same name in dae/model.schema.json
+    /// Further values of the key, with a definition of the same name
     std::vector<std::string> others = {};
     std::string fallback = {};      ///< value of the key if it is not given; "": it must be given
     std::string unregistered = {};  ///< definition for other values of the key; "": they are rejected
@@ -48,7 +51,6 @@ void add_group(io::Json& definitions, const Group& group)
 {
     std::vector<std::string> names;
     for (const Type& type : io::Registry<Type>::all()) {
-        definitions[definition_of(group, type.name)] = dae::definition(group.kind, type.name, type.schema);
         names.push_back(type.name);
     }
     names.insert(names.end(), group.others.begin(), group.others.end());
@@ -61,6 +63,9 @@ void add_group(io::Json& definitions, const Group& group)
             selection(key, value, has_default && name != group.fallback, definition_of(group, name)));
     }
     io::Json& definition = definitions[group.name];
+    definition = {{"title", group.kind.title}, {"description", group.description}, {"type", "object"}};
+    if (!has_default) definition["required"] = io::Json::List{key};
+    definition["properties"][key] = group.key;
     if (group.unregistered.empty()) {
         definition["properties"][key]["enum"] = names;
     } else {
@@ -73,32 +78,60 @@ void add_group(io::Json& definitions, const Group& group)
 /// The fallback of a constraint is one of the elastic normal laws.
 void add_fallback(io::Json& definitions)
 {
-    io::Json references = io::Json::array();
+    io::Json references = io::Json::array(), selections = io::Json::array();
     for (const NormalLawType& law : io::Registry<NormalLawType>::all())
-        if (law.elastic) references.push_back({{"$ref", "#/$defs/" + law.name}});
-    definitions["constraint"]["properties"]["fallback"]["oneOf"] = references;
+        if (law.elastic) {
+            references.push_back({{"$ref", "#/$defs/" + law.name}});
+            selections.push_back(selection("type", {{"const", law.name}}, false, law.name));
+        }
+    definitions["fallback"]["allOf"] = selections;
+    definitions["fallback"]["oneOf"] = references;
 }
+
+}  // namespace
 
 void add_contacts(io::Json& definitions)
 {
-    add_group<SurfaceType>(definitions, {.name = "surface",
-                                         .kind = {"Surface", "type", "Type of the surface."},
-                                         .prefix = "surface_",
-                                         .unregistered = "pose"});
-    add_group<NormalLawType>(definitions, {.name = "normal",
-                                           .kind = {"Normal law", "type", "Type of the normal law."},
-                                           .others = {"constraint"}});
-    add_group<FrictionLaw>(definitions, {.name = "friction",
-                                         .kind = {"Friction law", "law", "Name of the friction law."},
-                                         .others = {"rolling", "implicit"},
-                                         .fallback = "slide-roll-spin",
-                                         .unregistered = "friction_parameters"});
+    add_group<SurfaceType>(
+        definitions,
+        {.name = "surface",
+         .kind = {"Surface", "type", "Type of the surface."},
+         .description =
+             "A surface and its position and orientation in the body. Points of a surface are given in "
+             "the surface frame, with origin at position. z of this frame is the axis of a cone, "
+             "cylinder, disk, paraboloid or torus, the outward normal of a plane or foot, and the "
+             "vertical of a height map.",
+         .key = {{"description",
+                  "Type of the surface. Surfaces that a build adds are accepted by name; they have "
+                  "further keys."},
+                 {"type", "string"},
+                 {"examples", io::Json::List{"sphere"}}},
+         .prefix = "surface_",
+         .unregistered = "pose"});
+    add_group<NormalLawType>(
+        definitions,
+        {.name = "normal",
+         .kind = normal_kind,
+         .description =
+             "Law of the normal force N. hertz and hooke are compliant laws in the overlap delta of the "
+             "surfaces. given prescribes N. constraint replaces the force law by constraint rows; N is "
+             "then a Lagrange multiplier.",
+         .key = {{"description", "Type of the normal law."}, {"examples", io::Json::List{"hertz"}}},
+         .others = {"constraint"}});
+    add_group<FrictionLaw>(
+        definitions, {.name = "friction",
+                      .kind = friction_kind,
+                      .description = "Law of the friction force and of the rolling and spinning torques.",
+                      .key = {{"description",
+                               "Name of the law. Laws that a build adds are accepted by name; they may have "
+                               "further keys besides the common ones."},
+                              {"type", "string"},
+                              {"default", "slide-roll-spin"},
+                              {"examples", io::Json::List{"slide-roll-spin", "rolling"}}},
+                      .others = {"rolling", "implicit"},
+                      .fallback = "slide-roll-spin",
+                      .unregistered = "friction_parameters"});
     add_fallback(definitions);
 }
-
-const bool registered_contact_schema =
-    io::Registry<dae::SchemaPart>::add({.name = "contacts", .add = add_contacts});
-
-}  // namespace
 
 }  // namespace hilda::contact

@@ -18,10 +18,12 @@
 /// A key whose default depends on other keys enters the canonical text only if it is given.
 
 #include "contact/compliant/contact_force.hpp"
+#include "contact/contact_types.hpp"
 #include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
 #include "dae/model.hpp"
 #include "dae/model_types.hpp"
+#include "io/schema/schema_recorder.hpp"
 #include "lie/settings.hpp"
 
 namespace hilda::contact {
@@ -30,6 +32,8 @@ namespace {
 
 using dae::ObjectReader;
 
+const io::About about_friction = {"Friction law. Without it the contact is frictionless.",
+                                  R"({"mu_s": 0.5, "mu_k": 0.4, "K_E": 10000})"};
 constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
 
 /// Names of the registered normal laws; of those that can be a fallback
@@ -43,47 +47,116 @@ std::vector<std::string> normal_laws(bool elastic)
 
 std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string& type)
 {
-    return io::Registry<NormalLawType>::find(type)->read(o);
+    const NormalLawType& law = *io::Registry<NormalLawType>::find(type);
+    dae::defines_type(o, normal_kind, law.name, law.name, law.schema);
+    return law.read(o);
 }
 
 /// Reads the coefficients of friction.
 void read_coefficients(ObjectReader& o, double& mu_s, double& mu_k)
 {
-    mu_s = o.not_negative("mu_s");
-    mu_k = o.not_negative("mu_k", mu_s);
+    mu_s = o.not_negative("mu_s", {"Static coefficient of friction [-].", "0.5"});
+    mu_k = o.not_negative(
+        "mu_k",
+        {.text = "Kinetic coefficient of friction [-]. It must not exceed mu_s. By default equal to mu_s.",
+         .example = "0.4",
+         .computed = true},
+        mu_s);
     if (mu_k > mu_s)
         o.fail("mu_k",
                "mu_k must not be above mu_s, " + dae::shortest(mu_s) + ", got " + dae::shortest(mu_k));
+}
+
+/// Reads the keys that all friction laws have.
+FrictionParameters read_parameters(ObjectReader& o)
+{
+    const io::About about_preset = {
+        "Variant of the law. balanced: opposite rolling torques on the two bodies, which conserve angular "
+        "momentum, forces bounded by the Coulomb limit, and the reduced mass in the damping. dissertation: "
+        "the law as printed in Fang (2022), Ch. 4.",
+        R"("dissertation")"};
+    const std::string preset = o.one_of("preset", {"balanced", "dissertation"}, about_preset, "balanced");
+    FrictionParameters p;
+    if (preset == "dissertation") p = p.as_in_dissertation();
+
+    read_coefficients(o, p.mu_s, p.mu_k);
+    p.K_E = o.positive("K_E", {"Tangential stiffness K_E of sliding friction [N/m].", "10000"});
+    p.zeta =
+        o.not_negative("zeta",
+                       {"Damping ratio of the friction springs [-]: D = 2 zeta sqrt(m K), with the effective "
+                        "mass or moment of inertia m of the pair and the stiffness K of the spring.",
+                        "0.5"},
+                       p.zeta);
+    const auto damping = [&](const char* key, std::optional<double>& D, const io::About& about) {
+        if (o.given(key)) D = o.not_negative(key, about);
+    };
+    damping("D_slide", p.D_slide,
+            {"Damping coefficient of sliding friction [N s/m]. It replaces the value computed from zeta.",
+             "100"});
+    damping("D_roll", p.D_roll,
+            {"Damping coefficient of rolling friction [N m s/rad]. It replaces the value computed from zeta. "
+             "Laws without a rolling spring ignore it.",
+             "0.01"});
+    damping("D_spin", p.D_spin,
+            {"Damping coefficient of spinning friction [N m s/rad]. It replaces the value computed from "
+             "zeta. Laws without a spinning spring ignore it.",
+             "0.01"});
+    p.tracking.beta = o.number(
+        "beta",
+        {.text =
+             "Fraction of the relative spin by which the tracked displacement of the contact point is "
+             "rotated back [-]. By default 0.5 with the preset balanced and 1 with the preset dissertation.",
+         .example = "0.5",
+         .computed = true},
+        p.tracking.beta);
+    return p;
+}
+
+std::shared_ptr<const FrictionModel> read_keys(ObjectReader& o, const FrictionLaw& entry,
+                                               const NormalLaw& normal)
+{
+    const FrictionParameters p = read_parameters(o);
+    return entry.read != nullptr ? entry.read(o, p, normal) : entry.make(p);
 }
 
 /// Reads the keys of a friction law. `law` is its name, which has been read before.
 std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string& law,
                                               const NormalLaw& normal)
 {
-    const std::string preset = o.one_of("preset", {"balanced", "dissertation"}, "balanced");
-    FrictionParameters p;
-    if (preset == "dissertation") p = p.as_in_dissertation();
-
-    read_coefficients(o, p.mu_s, p.mu_k);
-    p.K_E = o.positive("K_E");
-    p.zeta = o.not_negative("zeta", p.zeta);
-    for (const auto& [key, D] :
-         {std::pair("D_slide", &p.D_slide), std::pair("D_roll", &p.D_roll), std::pair("D_spin", &p.D_spin)})
-        if (o.find(key) != nullptr) *D = o.not_negative(key);
-    p.tracking.beta = o.number("beta", p.tracking.beta);
     const FrictionLaw& entry = friction_law(law);
-    return entry.read != nullptr ? entry.read(o, p, normal) : entry.make(p);
+    dae::defines_type(o, friction_kind, entry.name, entry.name, entry.schema);
+    return read_keys(o, entry, normal);
+}
+
+/// Records the keys of the registered normal and friction laws.
+void record_laws(io::SchemaRecorder& recorder)
+{
+    record_surfaces(recorder);
+    for (const NormalLawType& law : io::Registry<NormalLawType>::all())
+        dae::record_examples(recorder, normal_kind, law.name, law.name, law.schema,
+                             [&](ObjectReader& o) { law.read(o); });
+    for (const FrictionLaw& law : io::Registry<FrictionLaw>::all())
+        dae::record_examples(recorder, friction_kind, law.name, law.name, law.schema,
+                             [&](ObjectReader& o) { read_keys(o, law, GivenForce(0)); });
+    // A law that is not registered has these keys, and others.
+    io::JsonSource source(R"({"mu_s": 0.5, "K_E": 1e4})", "friction parameters");
+    source.schema = &recorder;
+    ObjectReader o(source, source.root, "");
+    o.defines("friction_parameters", "", "");
+    read_parameters(o);
+    o.finish();
+    recorder.definition("friction_parameters")->open = true;
 }
 
 std::shared_ptr<const FrictionModel> read_friction(ObjectReader& contact, const NormalLaw& normal)
 {
     if (!contact.has("friction")) return frictionless();
-    ObjectReader o = contact.object("friction");
+    ObjectReader o = contact.object("friction", about_friction, "friction");
     if (const dae::Json* law = o.find("law");
         law != nullptr && law->string() != nullptr && *law->string() == rolling)
         o.fail("law",
                "law \"rolling\" needs \"normal\": {\"type\": \"constraint\"}, got a compliant contact");
-    const std::string law = o.one_of("law", io::Registry<FrictionLaw>::names(), slide_roll_spin);
+    const std::string law = o.one_of("law", io::Registry<FrictionLaw>::names(), {}, slide_roll_spin);
     std::shared_ptr<const FrictionModel> model = read_law(o, law, normal);
     contact.record("friction", o.finish());
     return model;
@@ -98,23 +171,55 @@ struct ConstraintNormal {
 
 ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair& pair)
 {
+    dae::defines_type(
+        o, normal_kind, "constraint", "constraint",
+        {.description =
+             "The contact is a constraint whose algebraic unknowns are the contact points (Fang 2022, Ch. "
+             "5). There is no overlap and no stiffness. The normal force is the Lagrange multiplier. "
+             "Both surfaces must be smooth: disk and foot are not allowed. The command hilda integrators "
+             "lists the integrators that support it.",
+         .examples = {},
+         .rest = R"("dependentSchemas": {"restitution": {"required": ["unilateral"], "properties": )"
+                 R"({"unilateral": {"const": true}}}, "impact": {"required": ["unilateral"], "properties": )"
+                 R"({"unilateral": {"const": true}}}})"});
     ConstraintNormal settings;
     Unilateral& unilateral = settings.unilateral;
-    unilateral.enabled = o.flag("unilateral", false);
+    unilateral.enabled = o.flag(
+        "unilateral",
+        {"If true, the contact transmits compression only: it separates if the multiplier becomes tensile, "
+         "and it closes with an impact. If false, the contact is bilateral and never separates.",
+         "true"},
+        false);
     const auto is_unilateral_or_given = [&](const char* key) {
         const bool given = o.find(key) != nullptr;
         return unilateral.enabled || given;
     };
-    if (is_unilateral_or_given("restitution")) unilateral.restitution = o.fraction("restitution", 0);
+    if (is_unilateral_or_given("restitution"))
+        unilateral.restitution = o.fraction(
+            "restitution",
+            {"Coefficient of restitution e [-] of the impact with which a unilateral contact closes. "
+             "Only with \"unilateral\": true.",
+             "0.5"},
+            0);
     if (!unilateral.enabled && o.has("restitution"))
         o.fail("restitution",
                "restitution needs \"unilateral\": true, got a bilateral contact with restitution " +
                    dae::shortest(unilateral.restitution));
-    if (is_unilateral_or_given("impact") && o.one_of("impact", {"newton", "poisson"}, "newton") == "poisson")
+    const io::About about_impact = {
+        "Impact law. newton: the velocity of separation is e times the velocity of approach. poisson: the "
+        "impulse of restitution is e times the impulse of compression. Only with \"unilateral\": true.",
+        R"("poisson")"};
+    if (is_unilateral_or_given("impact") &&
+        o.one_of("impact", {"newton", "poisson"}, about_impact, "newton") == "poisson")
         unilateral.impact = Unilateral::Impact::poisson;
     if (!unilateral.enabled && o.has("impact"))
         o.fail("impact", "impact needs \"unilateral\": true, got a bilateral contact");
-    std::string rows = o.one_of("rows", {"tangent", "fixed-xy"}, "tangent");
+    const io::About about_rows = {
+        "Directions on which the sum of the two unit normals is projected to make the normals opposite. "
+        "tangent: two tangents of the surface of body i. fixed-xy: the global x and y axes (Fang 2022, Eq. "
+        "5.17), which is singular if the normal lies in the x-y plane.",
+        R"("fixed-xy")"};
+    std::string rows = o.one_of("rows", {"tangent", "fixed-xy"}, about_rows, "tangent");
     if (!pair.normal_rows.empty()) {
         rows = pair.normal_rows;
         o.record("rows", rows);
@@ -123,7 +228,13 @@ ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair&
     }
     if (rows == "fixed-xy") settings.rows = EvolvingContact::NormalRows::fixed_xy;
     if (o.has("fallback")) {
-        ObjectReader law = o.object("fallback");
+        ObjectReader law = o.object(
+            "fallback",
+            {"Compliant normal law (hertz or hooke) that replaces the constraint while the contact point "
+             "is not unique or the multiplier is indeterminate. The friction law stays the same. Without "
+             "a fallback the run stops there with an error.",
+             R"({"type": "hooke", "stiffness": 1e5})"},
+            "fallback");
         settings.fallback = read_normal(law, law.one_of("type", normal_laws(true)));
         o.record("fallback", law.finish());
     }
@@ -139,22 +250,33 @@ struct ConstraintFriction {
 
 ImplicitFriction read_implicit(ObjectReader& o)
 {
+    dae::defines_type(
+        o, friction_kind, implicit, implicit,
+        {.description =
+             "Springs and dampers of sliding and rolling that are solved together with the step, so that "
+             "no stiffness limits the step size. It requires the normal law constraint without a "
+             "fallback.",
+         .examples = {}});
     ImplicitFriction f;
     read_coefficients(o, f.mu_s, f.mu_k);
-    f.K_E = o.positive("K_E");
-    f.K_D = o.not_negative("D_slide", 0);
-    f.eta_r = o.not_negative("eta_r", 0);
-    f.D_roll = o.not_negative("D_roll", 0);
+    f.K_E = o.positive("K_E", {"Tangential stiffness of sliding friction [N/m].", "1e6"});
+    f.K_D = o.not_negative("D_slide", {"Damping coefficient of sliding friction [N s/m].", "100"}, 0);
+    f.eta_r = o.not_negative(
+        "eta_r",
+        {"Rolling resistance coefficient eta_r [-] (Fang 2022, Eq. 4.5). Zero: no rolling resistance.",
+         "0.1"},
+        0);
+    f.D_roll = o.not_negative("D_roll", {"Damping coefficient of rolling friction [N m s/rad].", "0.01"}, 0);
     return f;
 }
 
 ConstraintFriction read_constraint_friction(ObjectReader& contact, const ConstraintNormal& normal)
 {
     if (!contact.has("friction")) return {};
-    ObjectReader o = contact.object("friction");
+    ObjectReader o = contact.object("friction", about_friction, "friction");
     std::vector<std::string> laws = io::Registry<FrictionLaw>::names();
     laws.insert(laws.begin(), {rolling, implicit});
-    const std::string law = o.one_of("law", laws, slide_roll_spin);
+    const std::string law = o.one_of("law", laws, {}, slide_roll_spin);
     ConstraintFriction settings{.ideal_rolling = law == rolling, .law = nullptr, .within_step = {}};
     if ((settings.ideal_rolling || law == implicit) && normal.fallback != nullptr)
         o.fail("law",
@@ -163,7 +285,14 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
                    law + "\", which is defined for the constraint only");
     if (law == implicit)
         settings.within_step = read_implicit(o);
-    else if (!settings.ideal_rolling)
+    else if (settings.ideal_rolling)
+        dae::defines_type(
+            o, friction_kind, rolling, rolling,
+            {.description = "Ideal rolling: the material points in contact have equal velocities. "
+                            "This is a nonholonomic constraint without a Coulomb bound. It requires "
+                            "the normal law constraint without a fallback.",
+             .examples = {}});
+    else
         // A constraint has no elastic modulus for "spin": "hertz". The fallback uses the same law.
         settings.law = read_law(o, law, GivenForce(0));
     contact.record("friction", o.finish());
@@ -212,10 +341,19 @@ struct Surfaces {
     Shape i, j;
     io::Json text_i, text_j;  ///< canonical form
 
+    static io::About about(std::string_view key)
+    {
+        if (key == "surface")
+            return {"Surface of each of the bodies.", R"({"type": "sphere", "radius": 0.1})"};
+        if (key == "surface_i") return {"Surface of body i.", R"({"type": "sphere", "radius": 0.1})"};
+        return {"Surface of body j.", R"({"type": "plane"})"};
+    }
+
     Surfaces(ObjectReader& o, const dae::ContactPair& pair)
     {
-        i = read_shape(o, pair.surface_i, text_i);
-        j = pair.surface_j == pair.surface_i ? i : read_shape(o, pair.surface_j, text_j);
+        i = read_shape(o, pair.surface_i, about(pair.surface_i), text_i);
+        j = pair.surface_j == pair.surface_i ? i
+                                             : read_shape(o, pair.surface_j, about(pair.surface_j), text_j);
         if (pair.surface_j == pair.surface_i) text_j = text_i;
     }
 };
@@ -228,7 +366,10 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
     o.record("surface_i", surfaces.text_i);
     o.record("surface_j", surfaces.text_j);
     const Shape &i = surfaces.i, &j = surfaces.j;
-    ObjectReader normal = o.object("normal");
+    ObjectReader normal = o.object("normal",
+                                   {"Normal law: how the normal force is computed.",
+                                    R"({"type": "hertz", "E_star": 1e7, "restitution": 0.5})"},
+                                   "normal");
     std::vector<std::string> types = normal_laws(false);
     types.emplace_back("constraint");
     const std::string type = normal.one_of("type", types);
@@ -240,6 +381,36 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
 }
 
 const bool registered_model_contacts = dae::register_contact_reader(read_contact);
+
+// The examples of contacts in the schema
+constexpr const char* bodies = R"({"name": "contacts", "bodies": [)"
+                               R"({"name": "ball", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 0]}, )"
+                               R"({"name": "ball-2", "mass": 1, "inertia": [1, 1, 1], "r": [1, 0, 0]}], )"
+                               R"("contacts": [)";
+constexpr const char* ball_on_floor =
+    R"("body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.1}, )"
+    R"("surface_j": {"type": "plane"}, )";
+
+const bool registered_contact_schema = io::Registry<dae::SchemaPart>::add(
+    {.name = "contacts",
+     .models =
+         {bodies + std::string(R"({"name": "ball-floor", )") + ball_on_floor +
+              R"("normal": {"type": "hertz", "E_star": 1e7, "restitution": 0.5}, )"
+              R"("friction": {"mu_s": 0.5, "mu_k": 0.4, "K_E": 10000, "eta_r": 0.05}}, )"
+              R"({"name": "ball-bowl", "body_i": "ball", "body_j": "ground", )"
+              R"("surface_i": {"type": "sphere", "radius": 0.1}, )"
+              R"("surface_j": {"type": "ellipsoid", "semi_axes": [2.5, 3, 2], "concave": true}, )"
+              R"("normal": {"type": "constraint"}, "friction": {"law": "rolling"}}, )"
+              R"({"name": "balls", "bodies": "all", "surface": {"type": "sphere", "radius": 0.1}, )"
+              R"("normal": {"type": "hooke", "stiffness": 1e5}}]})",
+          bodies + std::string("{") + ball_on_floor +
+              R"("normal": {"type": "constraint", "unilateral": true, "restitution": 0.5, )"
+              R"("fallback": {"type": "hooke", "stiffness": 1e5}}}, {)" +
+              ball_on_floor +
+              R"("normal": {"type": "constraint"}, )"
+              R"("friction": {"law": "implicit", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e6, "eta_r": 0.1}}]})"},
+     .record = record_laws,
+     .add = add_contacts});
 
 }  // namespace
 

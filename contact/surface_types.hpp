@@ -10,11 +10,6 @@
 
 namespace hilda::contact {
 
-/// The key "concave" of many surfaces
-inline const dae::KeySchema concave_key = {
-    "concave", "If true, the material is outside of the surface and the other body touches it from inside.",
-    R"("type": "boolean", "default": false, "examples": [true])"};
-
 /// A surface type. The file of the surface registers it by io::Registry<SurfaceType>::add().
 struct SurfaceType {
     std::string name;
@@ -24,6 +19,8 @@ struct SurfaceType {
     /// Key for the direction of the z axis of the surface frame, such as "normal" or "axis". Empty if there
     /// is none.
     std::string z = {};
+    /// The examples of the schema show the format: they name a file, or have too few values.
+    bool format_only = false;
 };
 
 }  // namespace hilda::contact
@@ -39,16 +36,25 @@ namespace hilda::contact {
 /// The pose is given in the body frame. `position` defaults to the origin of the body frame. The orientation
 /// is one of A, p, axis_angle, euler_angles and the key SurfaceType::z, and defaults to the identity. If only
 /// z is given, x and y are chosen by tangent_basis(). The canonical text has A. Throws dae::PlacedError.
-Shape read_shape(dae::ObjectReader& parent, std::string_view key);
+Shape read_shape(dae::ObjectReader& parent, std::string_view key, const io::About& about = {});
 
 /// The same, with the canonical text in `canonical` instead of a record in `parent`
-Shape read_shape(dae::ObjectReader& parent, std::string_view key, io::Json& canonical);
+Shape read_shape(dae::ObjectReader& parent, std::string_view key, const io::About& about,
+                 io::Json& canonical);
+
+/// Reads the key "concave" of many surfaces.
+bool read_concave(dae::ObjectReader& o);
+
+/// Records the keys of the registered surfaces for the schema of model files.
+void record_surfaces(io::SchemaRecorder& recorder);
 
 /// Reads the key "semi_axes": three positive lengths [m]
 Vec3 read_semi_axes(dae::ObjectReader& o);
 
 /// Reads a list of rows of numbers, all of the same length, as a matrix. `width` is the required length of a
-/// row; without it the first row sets the length. Throws dae::PlacedError.
-Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width = {});
+/// row; without it the first row sets the length. About::rest has the schema of a row. Throws
+/// dae::PlacedError.
+Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width,
+                          const io::About& about);
 
 }  // namespace hilda::contact

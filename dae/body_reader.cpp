@@ -10,16 +10,54 @@ namespace {
 /// The inertia of a body, given by three principal moments or by a full matrix
 Mat3 inertia(ObjectReader& o)
 {
+    o.note(
+        "inertia",
+        R"("anyOf": [{"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, )"
+        R"("maxItems": 3}, {"$ref": "#/$defs/matrix"}])",
+        {"Inertia tensor about the centre of mass [kg m^2], in the body frame: the three principal moments "
+         "if the axes of the body frame are principal axes, otherwise the full symmetric matrix. The "
+         "principal moments must satisfy the triangle inequality. It is required unless a shape is given; "
+         "the inertia is then that of a homogeneous body of this shape.",
+         "[0.4, 0.4, 0.1], [[0.4, 0.01, 0], [0.01, 0.4, 0], [0, 0, 0.1]]"});
     const Json* v = o.find("inertia");
     const bool full =
         v != nullptr && v->list() != nullptr && !v->list()->empty() && v->list()->front().list() != nullptr;
     return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
 }
 
+/// The keys of which a shape has one, for the schema
+void note_shapes(ObjectReader& o)
+{
+    constexpr const char* two = R"("$ref": "#/$defs/dimensions", "minItems": 2, "maxItems": 2)";
+    constexpr const char* three = R"("$ref": "#/$defs/dimensions", "minItems": 3, "maxItems": 3)";
+    o.note("box", three,
+           {"Lengths of the sides along x, y and z of the body frame [m].", "[0.2, 0.1, 0.05]"});
+    o.note("sphere", "positive", {"Radius [m].", "0.1"});
+    o.note("ellipsoid", three, {"Semi-axes along x, y and z of the body frame [m].", "[0.3, 0.2, 0.1]"});
+    o.note("cylinder", two, {"Radius and length [m].", "[0.05, 0.2]"});
+    o.note(
+        "cone", two,
+        {"Radius of the base and height [m]. The apex is at 3/4 of the height from the centre of mass, along "
+         "the axis.",
+         "[0.05, 0.2]"});
+}
+
 /// The shape of a body: one key with the name of the type, and "axis" for a cylinder or a cone
 BodyShape read_shape(ObjectReader& body)
 {
-    ObjectReader o = body.object("shape");
+    ObjectReader o = body.object(
+        "shape",
+        {"Shape of the body, with the centre of mass at the origin of the body frame. It is used for the "
+         "inertia if no inertia is given, for the mass if a density is given, and for pictures.",
+         R"({"box": [0.2, 0.1, 0.05]})"},
+        "shape");
+    o.defines("shape", "Shape",
+              "A solid, given by one of the keys box, sphere, ellipsoid, cylinder and cone.",
+              R"("oneOf": [{"required": ["box"]}, {"required": ["sphere"]}, {"required": ["ellipsoid"]}, )"
+              R"({"required": ["cylinder"]}, {"required": ["cone"]}], )"
+              R"("if": {"required": ["axis"]}, )"
+              R"("then": {"anyOf": [{"required": ["cylinder"]}, {"required": ["cone"]}]})");
+    note_shapes(o);
     BodyShape shape;
     for (const std::string& type : BodyShape::types())
         if (o.find(type) != nullptr) {
@@ -39,7 +77,9 @@ BodyShape read_shape(ObjectReader& body)
     for (const double x : shape.dimensions)
         if (!(x > 0)) o.fail(shape.type, shape.type + " must have positive dimensions, got " + shortest(x));
     if (BodyShape::has_axis(shape.type)) {
-        const std::string axis = o.one_of("axis", {"x", "y", "z"}, "z");
+        const std::string axis =
+            o.one_of("axis", {"x", "y", "z"},
+                     {"Axis of the body frame that is the axis of a cylinder or a cone.", R"("x")"}, "z");
         shape.axis = axis[0] - 'x';
     } else if (o.has("axis")) {
         o.find("axis");
@@ -58,14 +98,17 @@ void read_mass(ObjectReader& o, Body& b)
         o.exclude("mass", "density");
         o.exclude("inertia", "density");
         if (!o.has("shape")) o.fail("density", "density needs a shape");
-        const double density = o.positive("density");
+        const double density = o.positive(
+            "density",
+            {"Density [kg/m^3] of a homogeneous body, instead of mass and inertia. It needs a shape.",
+             "7850"});
         b.shape = read_shape(o);
         b.m = density * b.shape->volume();
         if (!(b.m > 0) || !std::isfinite(b.m))
             o.fail("density",
                    "the mass, density times volume, must be positive and finite, got " + shortest(b.m));
     } else {
-        b.m = o.positive("mass");
+        b.m = o.positive("mass", {"Mass m [kg]. It is required unless shape and density are given.", "1.5"});
         if (o.find("shape") != nullptr) b.shape = read_shape(o);
     }
     if (!b.shape || o.has("inertia"))

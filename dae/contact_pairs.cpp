@@ -56,6 +56,18 @@ std::vector<std::pair<int, int>> pairs_of(ObjectReader& o, std::string_view key,
 
 ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count)
 {
+    constexpr const char* one_or_more =
+        R"("anyOf": [{"$ref": "#/$defs/reference"}, {"$ref": "#/$defs/references"}])";
+    o.note("body_i", one_or_more,
+           {"Body i, a list of bodies, or \"all\" for all bodies with mass.", R"("ball", "all")"});
+    o.note("body_j", one_or_more,
+           {"Body j, which must differ from body i, a list of bodies, or \"all\" for all bodies with mass.",
+            R"("ground")"});
+    o.note(
+        "bodies", R"("anyOf": [{"const": "all"}, {"$ref": "#/$defs/references"}])",
+        {"Bodies of which each two are in contact: a list, or \"all\" for all bodies with mass. All have the "
+         "same surface.",
+         R"("all", ["ball-1", "ball-2", "ball-3"])"});
     ContactPairs all;
     if (o.find("bodies") != nullptr) {
         for (const char* key : {"body_i", "body_j", "surface_i", "surface_j"})

@@ -10,6 +10,7 @@
 #include "io/nearest.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -22,6 +23,35 @@ namespace hilda::dae {
 
 namespace {
 
+/// Conditions on several keys of a contact, for the schema
+constexpr const char* contact_conditions =
+    R"("oneOf": [{"required": ["body_i", "body_j", "surface_i", "surface_j"], "not": {"anyOf": [)"
+    R"({"required": ["bodies"]}, {"required": ["surface"]}]}}, {"required": ["bodies", "surface"], "not": )"
+    R"({"anyOf": [{"required": ["body_i"]}, {"required": ["body_j"]}, {"required": ["surface_i"]}, )"
+    R"({"required": ["surface_j"]}]}}], )"
+    R"("dependentSchemas": {"friction": {"if": {"properties": {"friction": {"type": "object", "required": )"
+    R"(["law"], "properties": {"law": {"enum": ["rolling", "implicit"]}}}}}, "then": {"properties": )"
+    R"({"normal": {"description": "A constraint without a fallback.", "properties": {"type": {"const": )"
+    R"("constraint"}}, "not": {"required": ["fallback"]}}}}}}, )"
+    R"("if": {"required": ["friction"], "properties": {"normal": {"properties": {"type": {"not": {"const": )"
+    R"("hertz"}}}}, "friction": {"required": ["spin"], "properties": {"law": {"const": )"
+    R"("slide-roll-spin"}}}}}, "then": {"properties": {"friction": {"description": "Without a Hertzian )"
+    R"(normal law, spin needs a modulus.", "required": ["E_star"]}}})";
+
+constexpr About about_name = {
+    .text =
+        "Name in messages and results; it must be unique within its list. By default "
+        "the type and the position in the list, counted from 1, for example "
+        "revolute-2 (for a contact: contact-2).",
+    .example = R"("crank-pin")",
+    .computed = true};
+
+std::string lower_case(std::string word)
+{
+    word[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(word[0])));
+    return word;
+}
+
 class ModelReader final : public BodyFinder {
 public:
     ModelReader(const JsonSource& source, const std::string& normal_rows, Description& out)
@@ -31,29 +61,66 @@ public:
     void read()
     {
         ObjectReader o(source, source.root, "");
+        o.defines(
+            "model", "Model",
+            "HILDA model file, version 1: rigid bodies, constraints, forces and contacts. Quantities are in "
+            "SI units and angles in radians. Keys with _bar are components in a body frame. A number can "
+            "be given as an expression in a string, such as \"pi/4\", see parameters. Symbols follow Fang "
+            "(2022), Sec. 2.1. The program checks further rules that this schema does not express: names "
+            "and ids are unique, JSON numbers are finite and keys are not repeated, strings have at most "
+            "4096 bytes, orientations are rotations to within 1e-6, principal moments of inertia satisfy "
+            "the triangle inequality, and the initial state satisfies the constraints to within 1e-9 "
+            "(hilda run --fix-initial projects it onto them).");
+        o.allow_schema(
+            {"Path or address of the JSON schema of model files, for editors. It has no effect on the "
+             "model.",
+             R"("../dae/model.schema.json")"});
         version(o);
-        out.name = o.name("name");
-        model.gravity = o.vec3("gravity", model.gravity);
-        out.end = o.positive("end", out.end);
-        if (o.has("redundant")) model.keep_redundant = o.one_of("redundant", {"drop", "keep"}) == "keep";
-        o.record("bodies", each(o, "bodies", true,
-                                [this](const Json& v, const std::string& at) { return read_body(v, at); }));
-        if (model.all_bodies().empty())
-            o.fail("bodies", "a model must have at least one body with mass, got none");
-        o.record("constraints", each(o, "constraints", false, [this](const Json& v, const std::string& at) {
-                     return constraint(v, at);
-                 }));
-        o.record("forces", each(o, "forces", false,
-                                [this](const Json& v, const std::string& at) { return load(v, at); }));
+        out.name =
+            o.name("name", {"Name of the model. It appears in results and messages.", R"("pendulum")"});
+        parameters(o);
+        model.gravity =
+            o.vec3("gravity", {"Acceleration of gravity [m/s^2], in the global frame.", "[0, 0, -1.62]"},
+                   model.gravity);
+        out.end = o.positive("end", {"End time of a run [s]. The option --end replaces it.", "10"}, out.end);
+        if (o.given("redundant")) {
+            const About about = {
+                "What happens to redundant constraint rows. drop: the rows that are redundant in the initial "
+                "state are removed from the equations. keep: all rows are kept, and the saddle matrix is "
+                "regularised. Mechanisms that pass through singular configurations, or whose redundant rows "
+                "change during the motion, need keep.",
+                R"("keep")", R"("default": "drop")"};
+            model.keep_redundant = o.one_of("redundant", {"drop", "keep"}, about) == "keep";
+        }
+        bodies(o);
+        o.record(
+            "constraints",
+            each(o, "constraints", "any_constraint",
+                 {"Joints, drivers and basic constraints. Redundant rows are detected at the start, reported "
+                  "and removed, unless the model has redundant = keep.",
+                  R"([{"type": "spherical", "body_i": "ground", "body_j": "ball"}])"},
+                 [this](const Json& v, const std::string& at) { return constraint(v, at); }));
+        o.record("forces",
+                 each(o, "forces", "any_force",
+                      {"Forces and torques other than gravity, constraint forces and contact forces.",
+                       R"([{"type": "force", "body": "ball", "frame": "global", "components": [1, 0, 0]}])"},
+                      [this](const Json& v, const std::string& at) { return load(v, at); }));
         contacts(o);
-        if (o.has("outputs"))
-            o.record("outputs", each(o, "outputs", false,
-                                     [this](const Json& v, const std::string& at) { return output(v, at); }));
-        if (o.has("events"))
-            o.record("events", each(o, "events", false,
-                                    [this](const Json& v, const std::string& at) { return event(v, at); }));
-        o.find("parameters");  // read by Parameters
-        o.allow_schema();
+        if (o.given("outputs"))
+            o.record("outputs",
+                     each(o, "outputs", "any_output",
+                          {"Quantities for the table outputs.csv of a run.",
+                           R"([{"name": "tip", "type": "point", "body": "bar", "point_bar": [0.5, 0, 0]}])"},
+                          [this](const Json& v, const std::string& at) { return output(v, at); }));
+        if (o.given("events"))
+            o.record(
+                "events",
+                each(
+                    o, "events", "event",
+                    {"Instants at which a formula is zero: they are rows of events.csv, or end the run. Used "
+                     "by hilda run.",
+                     R"([{"name": "lowest", "value": "bar.vz", "direction": "rising"}])"},
+                    [this](const Json& v, const std::string& at) { return event(v, at); }));
         out.text = written(o.finish()) + "\n";
         if (ignored > 0)
             out.warnings.push_back(ignored_place +
@@ -62,8 +129,39 @@ public:
     }
 
 private:
+    void parameters(ObjectReader& o)
+    {
+        o.find("parameters");  // read by Parameters
+        o.note("parameters",
+               R"("type": "object", "maxProperties": 1000, "propertyNames": {"pattern": )"
+               R"("^[A-Za-z_][A-Za-z0-9_]*$"}, "additionalProperties": {"type": "number", "minLength": 1, )"
+               R"("maxLength": 4096}, "properties": {"note": {"$ref": "#/$defs/note"}}, "default": {})",
+               {"Named numbers of the model, without a unit of their own: each a number, or an expression of "
+                "other parameters in a string. Every number of the model can be an expression of them, such "
+                "as \"2*l\" or \"pi/4\"; in an expression of the time or of other variables they can be used "
+                "as well. A name consists of letters, digits and underscores and must not be t, pi, e or the "
+                "name of a function. The order does not matter, and cycles are errors.",
+                R"({"l": 0.5, "m": "3*l"})"});
+    }
+
+    void bodies(ObjectReader& o)
+    {
+        o.note("bodies",
+               R"("type": "array", "minItems": 1, "items": {"anyOf": [{"$ref": "#/$defs/body"}, {"$ref": )"
+               R"("#/$defs/ground_body"}]}, "contains": {"$ref": "#/$defs/body"})",
+               {"Bodies of the model, at least one of them with mass. Their order is the order of the "
+                "columns in the results.",
+                R"([{"name": "ball", "mass": 1, "inertia": [0.004, 0.004, 0.004], "r": [0, 0, 0.1]}])"});
+        o.record("bodies", each(o.list("bodies", true), o.pointer("bodies"),
+                                [this](const Json& v, const std::string& at) { return read_body(v, at); }));
+        if (model.all_bodies().empty())
+            o.fail("bodies", "a model must have at least one body with mass, got none");
+    }
+
     void version(ObjectReader& o)
     {
+        o.note("hilda_model", R"("const": 1)",
+               {"Version of the format. A file without this key is read as version 1, with a warning.", "1"});
         if (!o.has("hilda_model")) {
             o.refuse_other_kinds("hilda_model");
             // The published model files of the dissertation have no version.
@@ -76,15 +174,24 @@ private:
         }
     }
 
+    /// The same for a list that may be missing, whose elements have this definition in the schema
+    template <class Read>
+    static Json each(ObjectReader& o, std::string_view key, const std::string& definition, const About& about,
+                     Read read)
+    {
+        o.note(key, R"("type": "array", "default": [], "items": {"$ref": "#/$defs/)" + definition + R"("})",
+               about);
+        return each(o.list(key, false), o.pointer(key), read);
+    }
+
     /// Reads the elements of a list and returns their canonical forms. Elements with a null result are
     /// omitted.
     template <class Read>
-    Json each(ObjectReader& o, std::string_view key, bool required, Read read)
+    static Json each(const Json::List& list, const std::string& pointer, Read read)
     {
         Json::List recorded;
-        const Json::List& list = o.list(key, required);
         for (size_t k = 0; k < list.size(); ++k) {
-            Json element = read(list[k], pointer_to(o.pointer(key), std::to_string(k)));
+            Json element = read(list[k], pointer_to(pointer, std::to_string(k)));
             if (element.members() != nullptr) recorded.push_back(std::move(element));
         }
         return recorded;
@@ -93,9 +200,14 @@ private:
     Json read_body(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const std::string name = o.name("name");
-        if (o.has("id") && !o.has("r") && !o.has("mass") && !o.has("inertia") && !o.has("shape"))
-            return ground_body(o, name);
+        if (o.peek("id") != nullptr && !o.has("r") && !o.has("mass") && !o.has("inertia") && !o.has("shape"))
+            return ground_body(o);
+        o.defines("body", "Body", "A rigid body with its mass properties and its initial state.",
+                  R"("anyOf": [{"required": ["mass", "inertia"]}, {"required": ["mass", "shape"]}, )"
+                  R"({"required": ["density", "shape"]}])");
+        const std::string name =
+            o.name("name", {"Name of the body. It must be unique and must not be \"ground\".", R"("crank")",
+                            R"("not": {"const": "ground"})"});
         if (name == "ground")
             o.fail("name", "the name 'ground' is reserved for the fixed body, got \"ground\"");
         register_body(o, name, model.bodies());
@@ -104,11 +216,31 @@ private:
         read_mass(o, b);
 
         Motion m;
-        m.r = o.vec3("r");
-        m.A = read_orientation(o);
+        m.r = o.vec3("r",
+                     {"Initial position r of the centre of mass [m], in the global frame.", "[0, 0, 0.5]"});
+        m.A = read_orientation(
+            o,
+            {.A = {"Initial orientation A [-]: the rotation matrix from the body frame to the global frame. "
+                   "At most one of A, p, axis_angle and euler_angles may be given. If none is given, the "
+                   "body frame is parallel to the global frame. The matrix must be orthogonal to within "
+                   "1e-6; smaller errors are corrected.",
+                   "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"},
+             .p = {"Initial orientation as Euler parameters e0, e1, e2, e3 [-] from the body frame to the "
+                   "global frame; e0 is the scalar part. The length must be 1 to within 1e-6.",
+                   "[0.8, 0, 0, 0.6]"},
+             .axis_angle =
+                 {"Initial orientation as a rotation from the global frame: the components ux, uy, uz "
+                  "of a unit axis [-] followed by the angle in rad. The length of the axis must be 1 "
+                  "to within 1e-6.",
+                  "[0, 0, 1, 1.5707963267948966]"},
+             .euler_angles = {"Initial orientation as Euler angles, from the body frame to the global frame.",
+                              R"({"sequence": "zxz", "angles": [0.5, 1.2, 0]})"}});
         o.record("A", json(m.A));
-        m.rdot = o.vec3("r_dot", Vec3::Zero());
-        m.omega_bar = o.vec3("omega", Vec3::Zero());
+        m.rdot = o.vec3("r_dot",
+                        {"Initial velocity of the centre of mass [m/s], in the global frame.", "[0, 1, 0]"},
+                        Vec3::Zero());
+        m.omega_bar = o.vec3(
+            "omega", {"Initial angular velocity [rad/s], in the body frame.", "[0, 0, 6.28]"}, Vec3::Zero());
         Json recorded = o.finish();
         std::erase_if(std::get<Json::Object>(recorded.value), [](const Json::Member& k) {
             return k.key == "p" || k.key == "axis_angle" || k.key == "euler_angles" || k.key == "density";
@@ -123,8 +255,15 @@ private:
     }
 
     /// The published files list the ground as a body without r. The canonical form omits it.
-    Json ground_body(ObjectReader& o, const std::string& name)
+    Json ground_body(ObjectReader& o)
     {
+        o.defines(
+            "ground_body", "Ground entry",
+            "An entry for the ground in the list of bodies. It is optional: the ground always exists under "
+            "the name \"ground\". The entry gives it a second name and an id, as in the published files of "
+            "the dissertation. At most one such entry is allowed.",
+            R"("required": ["name", "id"])");
+        const std::string name = o.name("name", {"Second name of the ground.", R"("base")"});
         if (ground_listed)
             o.fail("only one body without r and mass, the ground, is allowed; got a second one, '" + name +
                    "'");
@@ -139,6 +278,7 @@ private:
     {
         if (name != "ground" && !by_name.emplace(name, number).second)
             o.fail("name", "two bodies have the same name, got " + described(name));
+        o.note("id", R"("$ref": "#/$defs/id")", {});
         if (o.find("id") != nullptr)
             if (const int id = o.integer("id"); !by_id.emplace(id, number).second)
                 o.fail("id", "two bodies have the same id, got " + std::to_string(id));
@@ -152,9 +292,10 @@ private:
     }
 
     /// Number of the body whose name or id is given by a key
-    int body(ObjectReader& o, std::string_view key) const override
+    int body(ObjectReader& o, std::string_view key, const About& about) const override
     {
-        const Json* v = o.find(key);
+        o.note(key, R"("$ref": "#/$defs/reference")", about);
+        const Json* v = o.peek(key);
         if (v != nullptr && v->number() != nullptr) {
             const int id = o.integer(key);
             const auto found = by_id.find(id);
@@ -199,7 +340,8 @@ private:
     /// body_i and body_j, which must differ
     std::pair<int, int> pair(ObjectReader& o) const override
     {
-        const int i = body(o, "body_i"), j = body(o, "body_j");
+        const int i = body(o, "body_i", {"Body i.", R"("ground")"});
+        const int j = body(o, "body_j", {"Body j; it must differ from body i.", R"("crank")"});
         if (i == j)
             o.fail("body_j",
                    "body_i and body_j must be two different bodies, got '" + model.body_name(i) + "' twice");
@@ -209,7 +351,8 @@ private:
     /// Name and type of a constraint or force. The default name consists of the type and the number in the
     /// list.
     template <class Type>
-    std::pair<std::string, const Type*> heading(ObjectReader& o, std::set<std::string>& used_names)
+    std::pair<std::string, const Type*> heading(ObjectReader& o, const char* title,
+                                                std::set<std::string>& used_names)
     {
         o.record("name", {});  // so that the name precedes the type
         if (const Json* v = o.find("type"); v != nullptr && v->string() != nullptr)
@@ -217,15 +360,17 @@ private:
                 io::Registry<Type>::find(*v->string()) == nullptr &&
                 io::Registry<Type>::find(meant) != nullptr)
                 o.fail("type", "unknown type " + described(*v) + "; did you mean '" + meant + "'?");
-        const std::string type = o.one_of("type", io::Registry<Type>::names());
-        return {unique_name(o, type, used_names), io::Registry<Type>::find(type)};
+        const Type& type = *io::Registry<Type>::find(o.one_of("type", io::Registry<Type>::names()));
+        defines_type(o, {title, "type", "Type of the " + lower_case(title) + '.'}, type.name, type.name,
+                     type.schema);
+        return {unique_name(o, type.name, used_names), &type};
     }
 
     /// A name that is not used yet. The default consists of the kind and the number in the list.
     static std::string unique_name(ObjectReader& o, const std::string& kind,
-                                   std::set<std::string>& used_names)
+                                   std::set<std::string>& used_names, const About& about = about_name)
     {
-        std::string name = o.name("name", kind + "-" + std::to_string(used_names.size() + 1));
+        std::string name = o.name("name", about, kind + "-" + std::to_string(used_names.size() + 1));
         if (!used_names.insert(name).second)
             o.fail("name", "this name is already used, got " + described(name));
         return name;
@@ -234,13 +379,12 @@ private:
     Json constraint(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const auto [name, type] = heading<ConstraintType>(o, constraint_names);
+        const auto [name, type] = heading<ConstraintType>(o, "Constraint", constraint_names);
         const auto [i, j] = pair(o);
         ConstraintType::Constraints constraint =
             o.located([&, type = type, i = i, j = j] { return type->read(o, i, j, out.x); });
-        if (std::count(type->schema.parts.begin(), type->schema.parts.end(), "derivatives") > 0)
-            ignore_derivatives(o);
         Json recorded = o.finish();
+        note_derivatives(o);
         if (auto* rows = std::get_if<Blocks>(&constraint)) {
             model.constrain(name, std::move(*rows));
             out.constraint_place.push_back(o.place());
@@ -252,21 +396,25 @@ private:
     }
 
     /// The published files give f_dot and f_ddot, which follow from f here.
-    void ignore_derivatives(ObjectReader& o)
+    void note_derivatives(const ObjectReader& o)
     {
         const bool given = o.has("f_dot") || o.has("f_ddot");
         if (given && ++ignored == 1) ignored_place = o.place(o.has("f_dot") ? "f_dot" : "f_ddot");
-        o.find("f_dot");
-        o.find("f_ddot");
     }
 
     Json load(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const auto [name, type] = heading<ForceType>(o, force_names);
+        const auto [name, type] = heading<ForceType>(o, "Force", force_names);
         std::unique_ptr<Force> force = o.located([&, type = type] { return type->read(o, *this, out.x); });
         force->name = name;
-        if (force->may_be_implicit() && o.has("implicit")) force->implicit = o.flag("implicit");
+        if (force->may_be_implicit() && o.given("implicit"))
+            force->implicit =
+                o.flag("implicit", {"Whether the spring and damper are evaluated implicitly by the "
+                                    "integrators that can: rA-half-1, rA-half-1-kick and rA-half-1-momentum. "
+                                    "The stiffness and the damping along its line then do not limit their "
+                                    "step. Other integrators evaluate the force as without this key.",
+                                    "true", R"("default": false)"});
         Json recorded = o.finish();
         model.load(std::move(force));
         out.force_place.push_back(o.place());
@@ -276,7 +424,7 @@ private:
     Json output(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const auto [name, type] = heading<OutputType>(o, output_names);
+        const auto [name, type] = heading<OutputType>(o, "Output", output_names);
         std::unique_ptr<Output> output =
             o.located([&, type = type] { return type->read(o, *this, out.x, columns_of_outputs()); });
         output->name = name;
@@ -298,7 +446,16 @@ private:
     Json event(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
-        const std::string name = unique_name(o, "event", event_names);
+        o.defines(
+            "event", "Event",
+            "The instants at which a formula is zero. They are located between the nodes of a run to the "
+            "last digits of t. Two zeros between two nodes are not seen.");
+        const std::string name =
+            unique_name(o, "event", event_names,
+                        {.text = "Name of the event. It must be unique among the events. The default "
+                                 "consists of \"event\" and the number in the list.",
+                         .example = R"("lowest")",
+                         .computed = true});
         Event event = read_event(o, columns_of_outputs());
         event.value->name = name;
         event.value->name_place = o.place("name");
@@ -311,6 +468,11 @@ private:
     /// group.
     void contacts(ObjectReader& o)
     {
+        o.note("contacts",
+               R"("type": "array", "default": [], "items": {"type": "object", "$ref": "#/$defs/contact"})",
+               {"Contacts between surfaces of two bodies.",
+                R"([{"body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.1}, )"
+                R"("surface_j": {"type": "plane"}, "normal": {"type": "hooke", "stiffness": 1e5}}])"});
         const Json::List& list = o.list("contacts", false);
         if (list.empty()) return;
         const ReadContact read = contact_reader();
@@ -327,10 +489,17 @@ private:
     {
         std::shared_ptr<const void> shared;
         ObjectReader entry(source, v, at);
+        entry.defines("contact", "Contact",
+                      "Contact between a surface of body i and a surface of body j: a normal force and, "
+                      "optionally, friction. At the start, compliant contacts must not overlap by more than "
+                      "a tenth of a radius of curvature. An entry can stand for many pairs of bodies: each "
+                      "two of the bodies of a list (bodies), or each of one list with each of another "
+                      "(body_i, body_j). A pair of such a group NAME has the name \"NAME: body i-body j\".",
+                      contact_conditions);
         const std::string entry_name = unique_name(entry, "contact", contact_names);
         const ContactPairs all = read_contact_pairs(entry, *this, model.bodies());
         for (const auto& [i, j] : all.pairs) {
-            ObjectReader o(source, v, at);
+            ObjectReader o = entry.again();
             const std::string name = all.is_group ? pair_name(entry_name, i, j) : entry_name;
             o.record("name", name);
             for (const auto& [key, number] : {std::pair("body_i", i), std::pair("body_j", j)})
@@ -401,6 +570,15 @@ Description read_model(std::string_view text, const std::string& file, std::span
     description.parameters = parameters.all();
     description.files = source.files;
     return description;
+}
+
+void record_model(const std::string& example, const std::string& name, io::SchemaRecorder& recorder)
+{
+    JsonSource source(example, name, example.size() + 1);
+    source.schema = &recorder;
+    Description description;
+    description.model = std::make_unique<Model>();
+    ModelReader(source, {}, description).read();
 }
 
 Description load_model(const std::string& path, std::span<const std::string> set,

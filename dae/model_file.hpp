@@ -9,6 +9,10 @@
 
 #include <span>
 
+namespace hilda::io {
+class SchemaRecorder;
+}
+
 namespace hilda::dae {
 
 /// The content of a model file. The model is complete and ready for start(). x holds the initial data as
@@ -45,6 +49,10 @@ struct Description {
 /// syntax, for unknown, missing and duplicate keys, and for invalid types, ranges, names and expressions.
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {},
                        const std::string& normal_rows = "", const std::string& folder = "");
+
+/// Records the keys of a model file for the schema, by reading an example. `name` is that of the example in
+/// messages. Throws as read_model().
+void record_model(const std::string& example, const std::string& name, io::SchemaRecorder& recorder);
 
 /// Reads a model from a regular file of at most 64 MiB. Throws lie::InvalidInput without a line number if the
 /// file cannot be read.

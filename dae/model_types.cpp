@@ -62,7 +62,7 @@ std::vector<double> list_of_numbers(ObjectReader& o, std::string_view key)
 /// has the numbers.
 Driver read_samples(ObjectReader& of, std::string_view key)
 {
-    ObjectReader o = of.object(key);
+    ObjectReader o(of.object(key, {}, "motion"));
     Samples samples;
     o.exclude("file", "t"), o.exclude("file", "f");
     if (o.has("file")) {
@@ -87,10 +87,40 @@ Driver read_samples(ObjectReader& of, std::string_view key)
 
 }  // namespace
 
-Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback)
+Points::Points(ObjectReader& o)
+    : i(o.vec3("s_bar_p_i",
+               {"Position of point P relative to the centre of mass of body i [m], in the frame of body i.",
+                "[0, 0.1, 0]"},
+               Vec3::Zero())),
+      j(o.vec3("s_bar_q_j",
+               {"Position of point Q relative to the centre of mass of body j [m], in the frame of body j.",
+                "[0, -0.2, 0]"},
+               Vec3::Zero()))
+{}
+
+Axes::Axes(ObjectReader& o)
+    : i(o.direction("axis_bar_i", {"Axis of the joint [-], in the frame of body i.", "[1, 0, 0]"})),
+      j(o.direction("axis_bar_j", {"Axis of the joint [-], in the frame of body j.", "[1, 0, 0]"}))
+{}
+
+Driver read_value(ObjectReader& o, const About& about, const std::optional<std::string>& fallback)
 {
-    if (const Json* v = o.find(key); v != nullptr && v->members() != nullptr) return read_samples(o, key);
-    const std::string text = o.formula(key, fallback);
+    for (const char* key : {"f_dot", "f_ddot"}) {
+        o.note(key, R"("deprecated": true)",
+               {"Accepted for compatibility with the published files of the dissertation and ignored with a "
+                "warning: derivatives of f are computed exactly."});
+        o.find(key);
+    }
+    return read_driver(o, "f", about, fallback);
+}
+
+Driver read_driver(ObjectReader& o, std::string_view key, const About& about,
+                   const std::optional<std::string>& fallback)
+{
+    const Json by_default = fallback ? Json(*fallback) : Json();
+    o.note(key, R"("$ref": "#/$defs/motion")", about, fallback ? &by_default : nullptr);
+    if (const Json* v = o.peek(key); v != nullptr && v->members() != nullptr) return read_samples(o, key);
+    const std::string text = o.formula(key, {}, fallback);
     try {
         Driver f(text);
         const io::Jet start = f.jet(0);

@@ -28,7 +28,7 @@ class BodyFinder {
 public:
     virtual ~BodyFinder() = default;
     /// Number of the body whose name or id is given by a key
-    virtual int body(ObjectReader& o, std::string_view key) const = 0;
+    virtual int body(ObjectReader& o, std::string_view key, const About& about = {}) const = 0;
     /// The same for an element of the list under a key
     virtual int body_of_list(ObjectReader& o, std::string_view key, std::size_t element) const = 0;
     /// Number of the body with this name, or nothing
@@ -71,20 +71,22 @@ namespace hilda::dae {
 std::string type_with_other_name(const std::string& name);
 
 /// The function f(t) given by a key. f, ḟ and f̈ must be finite at t = 0.
-Driver read_driver(ObjectReader& o, std::string_view key, const std::optional<std::string>& fallback = {});
+Driver read_driver(ObjectReader& o, std::string_view key, const About& about,
+                   const std::optional<std::string>& fallback = {});
+/// f(t) of a basic constraint, from the key "f". The keys f_dot and f_ddot of the published files are
+/// accepted.
+Driver read_value(ObjectReader& o, const About& about, const std::optional<std::string>& fallback = {});
 
 /// Points P and Q of the two bodies in the body frames [m], by default the centres of mass
 struct Points {
     Vec3 i, j;
-    explicit Points(ObjectReader& o)
-        : i(o.vec3("s_bar_p_i", Vec3::Zero())), j(o.vec3("s_bar_q_j", Vec3::Zero()))
-    {}
+    explicit Points(ObjectReader& o);
 };
 
 /// Axes of the two bodies in the body frames, not zero
 struct Axes {
     Vec3 i, j;
-    explicit Axes(ObjectReader& o) : i(o.direction("axis_bar_i")), j(o.direction("axis_bar_j")) {}
+    explicit Axes(ObjectReader& o);
 };
 
 /// A list of one block

@@ -17,21 +17,31 @@ constexpr double orientation_tolerance = 1e-6;
 // An A with a smaller error is not changed, so that writing and reading a model leaves it unchanged.
 constexpr double exact_rotation = 1e-14;
 
+const std::vector<std::string> forms = {"A", "p", "axis_angle", "euler_angles"};
+
 }  // namespace
 
-Vec3 ObjectReader::vec3(std::string_view key, const std::optional<Vec3>& fallback)
+Vec3 ObjectReader::vec3(std::string_view key, const About& about, const std::optional<Vec3>& fallback)
 {
+    const Json by_default = fallback ? json(*fallback) : Json();
+    note(key, "vector", about, fallback ? &by_default : nullptr);
     if (lookup(key, !fallback) == nullptr) {
-        record(key, json(*fallback));
+        record(key, by_default);
         return *fallback;
     }
+    return vector(key);
+}
+
+Vec3 ObjectReader::vector(std::string_view key)
+{
     const std::vector<double> x = numbers(key, 3);
     return {x[0], x[1], x[2]};
 }
 
-Vec3 ObjectReader::direction(std::string_view key)
+Vec3 ObjectReader::direction(std::string_view key, const About& about)
 {
-    Vec3 v = vec3(key);
+    note(key, "direction", about);
+    Vec3 v = vector(key);
     const double length = v.norm();
     if (!(length > 0) || !std::isfinite(length))
         fail(key, std::string(key) + " must have a direction, got " + described(*find(key)) + " of length " +
@@ -39,8 +49,9 @@ Vec3 ObjectReader::direction(std::string_view key)
     return v;
 }
 
-Mat3 ObjectReader::matrix(std::string_view key)
+Mat3 ObjectReader::matrix(std::string_view key, const About& about)
 {
+    note(key, "matrix", about);
     const Json& v = *lookup(key, true);
     Mat3 m;
     const auto is_row = [](const Json& row) { return row.list() != nullptr && row.list()->size() == 3; };
@@ -56,9 +67,20 @@ Mat3 ObjectReader::matrix(std::string_view key)
     return m;
 }
 
-Mat3 read_orientation(ObjectReader& o)
+void note_orientation(ObjectReader& o, const AboutOrientation& about)
 {
-    const std::vector<std::string> forms = {"A", "p", "axis_angle", "euler_angles"};
+    constexpr const char* four =
+        R"("type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4)";
+    o.note("A", "matrix", about.A);
+    o.note("p", four, about.p);
+    o.note("axis_angle", four, about.axis_angle);
+    o.note("euler_angles", R"("$ref": "#/$defs/euler_angles")", about.euler_angles);
+    o.note_exclusive(forms);
+}
+
+Mat3 read_orientation(ObjectReader& o, const AboutOrientation& about)
+{
+    note_orientation(o, about);
     const auto given = std::count_if(forms.begin(), forms.end(),
                                      [&](const std::string& key) { return o.find(key) != nullptr; });
     if (given > 1)
@@ -89,15 +111,25 @@ Mat3 read_orientation(ObjectReader& o)
             o.fail("axis_angle", deviation_message("the axis of axis_angle must have length 1", u.norm()));
         A = lie::exp(std::remainder(a[3], 2 * std::numbers::pi) * u.normalized());
     } else if (o.has("euler_angles")) {
-        ObjectReader e = o.object("euler_angles");
-        const std::string name = e.text("sequence");
+        ObjectReader e = o.object("euler_angles", about.euler_angles, "euler_angles");
+        e.defines(
+            "euler_angles", "Euler angles",
+            "Three rotations about the axes of the frame as it turns: A = R(angle 1) R(angle 2) R(angle "
+            "3), each about the axis of the sequence.");
+        const std::string name = e.text(
+            "sequence",
+            {"Axes of the three rotations, in this order: zxz is that of Fang (2022), Eq. 2.1b, with the "
+             "angles theta, phi, psi; zyx is yaw, pitch and roll.",
+             R"("zxz")",
+             R"("enum": ["xyx", "xyz", "xzx", "xzy", "yxy", "yxz", "yzx", "yzy", "zxy", "zxz", "zyx", "zyz"])"});
         const auto sequence = lie::EulerSequence::named(name);
         if (!sequence)
             e.fail("sequence",
                    "a sequence must be three of the letters x, y and z in which neighbours differ, such as "
                    "zxz, got " +
                        described(name));
-        Vec3 angles = e.vec3("angles");
+        Vec3 angles =
+            Vec3::Map(e.numbers("angles", 3, {"The three angles [rad].", R"([0.5, "pi/4", 0])"}).data());
         for (double& angle : angles) angle = std::remainder(angle, 2 * std::numbers::pi);
         A = sequence->rotation(angles);
         e.finish();

@@ -2,6 +2,7 @@
 #include "io/object_reader.hpp"
 
 #include "io/nearest.hpp"
+#include "io/schema/schema_recorder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,19 +33,87 @@ ObjectReader::ObjectReader(const JsonSource& source, const Json& value, std::str
     : source(source), value(value), own_pointer(std::move(pointer))
 {
     if (value.members() == nullptr) fail("must be an object, got " + described(value));
+    if (source.schema == nullptr) return;
+    notes = std::make_shared<ObjectSchema>(*source.schema);
+    notes->begin();
 }
 
-double ObjectReader::number(std::string_view key, std::optional<double> fallback)
+void ObjectReader::defines(std::string_view name, std::string_view title, std::string_view description,
+                           std::string_view rest)
 {
+    if (notes == nullptr) return;
+    notes = source.schema->definition(std::string(name));
+    notes->title = title, notes->description = description;
+    notes->rest = source.schema->kind(rest);
+    notes->begin();
+    constexpr size_t most = 3;
+    if (source.schema->shown.contains(name) && notes->examples.size() < most) notes->add_example(value);
+}
+
+void ObjectReader::note_exclusive(std::span<const std::string> keys)
+{
+    if (notes == nullptr) return;
+    for (size_t k = 0; k < keys.size(); ++k)
+        for (const std::string& other : keys.subspan(k + 1)) notes->exclude(keys[k], other);
+}
+
+void ObjectReader::note(std::string_view key, std::string_view kind, const About& about, const Json* fallback)
+{
+    if (notes == nullptr) return;
+    Json schema = Json::object(), example;
+    if (!about.text.empty()) schema["description"] = std::string(about.text);
+    schema.update(source.schema->kind(kind));
+    if (fallback != nullptr && !about.computed) schema["default"] = *fallback;
+    schema.update(source.schema->kind(about.rest));
+    if (!about.example.empty()) {
+        const std::string list = '[' + std::string(about.example) + ']';
+        schema["examples"] = parsed_schema(list, "examples of " + std::string(key));
+        example = schema["examples"].at(0);
+    }
+    notes->describe(key, std::move(schema), std::move(example));
+}
+
+ObjectReader ObjectReader::again() const
+{
+    ObjectReader o(source, value, own_pointer);
+    o.notes = notes;
+    return o;
+}
+
+bool ObjectReader::has(std::string_view key) const
+{
+    if (notes != nullptr) notes->seen(key, false);
+    return value.member(key) != nullptr;
+}
+
+/// Notes a key with an optional fallback.
+template <class Fallback>
+void ObjectReader::note_value(std::string_view key, std::string_view kind, const About& about,
+                              const std::optional<Fallback>& fallback)
+{
+    if (notes == nullptr) return;
+    const Json as_json = fallback ? Json(*fallback) : Json();
+    note(key, kind, about, fallback ? &as_json : nullptr);
+}
+
+double ObjectReader::number(std::string_view key, const About& about, std::optional<double> fallback)
+{
+    return number_of_kind("number", key, about, fallback);
+}
+
+double ObjectReader::number_of_kind(std::string_view kind, std::string_view key, const About& about,
+                                    std::optional<double> fallback)
+{
+    note_value(key, kind, about, fallback);
     const Json* v = lookup(key, !fallback);
     const double x = v != nullptr ? number_at(*v, pointer(key), key) : *fallback;
     record(key, x);
     return x;
 }
 
-double ObjectReader::positive(std::string_view key, std::optional<double> fallback)
+double ObjectReader::positive(std::string_view key, const About& about, std::optional<double> fallback)
 {
-    const double x = number(key, fallback);
+    const double x = number_of_kind("positive", key, about, fallback);
     if (!(x > 0)) fail(key, std::string(key) + " must be positive, got " + shortest(x));
     if (x < least_positive)
         fail(key,
@@ -52,42 +121,44 @@ double ObjectReader::positive(std::string_view key, std::optional<double> fallba
     return x;
 }
 
-double ObjectReader::not_negative(std::string_view key, std::optional<double> fallback)
+double ObjectReader::not_negative(std::string_view key, const About& about, std::optional<double> fallback)
 {
-    const double x = number(key, fallback);
+    const double x = number_of_kind("not_negative", key, about, fallback);
     if (!(x >= 0)) fail(key, std::string(key) + " must not be negative, got " + shortest(x));
     return x;
 }
 
-double ObjectReader::fraction(std::string_view key, std::optional<double> fallback)
+double ObjectReader::fraction(std::string_view key, const About& about, std::optional<double> fallback)
 {
-    const double x = number(key, fallback);
+    const double x = number_of_kind("fraction", key, about, fallback);
     if (!(x >= 0 && x <= 1)) fail(key, std::string(key) + " must be from 0 to 1, got " + shortest(x));
     return x;
 }
 
-int ObjectReader::integer(std::string_view key)
+int ObjectReader::integer(std::string_view key, const About& about)
 {
+    note(key, "integer", about);
     if (const Json* v = lookup(key, true); v->number() == nullptr)
         fail(key, std::string(key) + " must be a number, got " + described(*v));
-    const double x = number(key);
+    const double x = number_of_kind("integer", key, about, {});
     constexpr double most = 2147483647;
     if (x != std::trunc(x) || std::abs(x) > most)
         fail(key, std::string(key) + " must be an integer of at most 31 bits, got " + shortest(x));
     return static_cast<int>(x);
 }
 
-long ObjectReader::count(std::string_view key, std::optional<long> fallback)
+long ObjectReader::count(std::string_view key, const About& about, std::optional<long> fallback)
 {
-    const double x = number(key, fallback);
+    const double x = number_of_kind("count", key, about, fallback);
     constexpr double most = 9007199254740992;  // 2^53
     if (x != std::trunc(x) || x < 0 || x > most)
         fail(key, std::string(key) + " must be an integer from 0 to 2^53, got " + shortest(x));
     return static_cast<long>(x);
 }
 
-bool ObjectReader::flag(std::string_view key, std::optional<bool> fallback)
+bool ObjectReader::flag(std::string_view key, const About& about, std::optional<bool> fallback)
 {
+    note_value(key, "flag", about, fallback);
     const Json* v = lookup(key, !fallback);
     const bool* given = v != nullptr ? v->boolean() : nullptr;
     if (v != nullptr && given == nullptr)
@@ -97,8 +168,16 @@ bool ObjectReader::flag(std::string_view key, std::optional<bool> fallback)
     return x;
 }
 
-std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count)
+std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count, const About& about)
 {
+    if (notes != nullptr) {
+        const Json number = source.schema->kind("number");
+        const std::string size = std::to_string(count);
+        note(key,
+             R"("type": "array", "items": )" + written(number) + R"(, "minItems": )" + size +
+                 R"(, "maxItems": )" + size,
+             about);
+    }
     const Json& v = *lookup(key, true);
     if (v.list() == nullptr || v.list()->size() != count)
         fail(key, std::string(key) + " must be a list of " + std::to_string(count) + " numbers, got " +
@@ -113,7 +192,14 @@ std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t coun
     return x;
 }
 
-std::string ObjectReader::text(std::string_view key, const std::optional<std::string>& fallback)
+std::string ObjectReader::text(std::string_view key, const About& about,
+                               const std::optional<std::string>& fallback)
+{
+    note_value(key, "text", about, fallback);
+    return text_of(key, fallback);
+}
+
+std::string ObjectReader::text_of(std::string_view key, const std::optional<std::string>& fallback)
 {
     const Json* v = lookup(key, !fallback);
     if (v != nullptr && v->string() == nullptr)
@@ -126,16 +212,19 @@ std::string ObjectReader::text(std::string_view key, const std::optional<std::st
     return s;
 }
 
-std::string ObjectReader::name(std::string_view key, const std::optional<std::string>& fallback)
+std::string ObjectReader::name(std::string_view key, const About& about,
+                               const std::optional<std::string>& fallback)
 {
-    std::string s = text(key, fallback);
+    note_value(key, "name", about, fallback);
+    std::string s = text_of(key, fallback);
     if (s.empty() || std::any_of(s.begin(), s.end(), is_control))
         fail(key, std::string(key) + " must be a name without control characters, got " + described(s));
     return s;
 }
 
-std::string ObjectReader::file(std::string_view key)
+std::string ObjectReader::file(std::string_view key, const About& about)
 {
+    note(key, "file", about);
     const Json& v = *lookup(key, true);
     const std::string* path = v.string();
     if (path == nullptr || path->empty() || std::any_of(path->begin(), path->end(), is_control))
@@ -145,22 +234,28 @@ std::string ObjectReader::file(std::string_view key)
 }
 
 std::string ObjectReader::one_of(std::string_view key, const std::vector<std::string>& allowed,
-                                 const std::optional<std::string>& fallback)
+                                 const About& about, const std::optional<std::string>& fallback)
 {
-    std::string s = text(key, fallback);
+    if (notes != nullptr) {
+        const Json default_word = fallback ? Json(*fallback) : Json();
+        note(key, R"("enum": )" + written(Json(allowed)), about, fallback ? &default_word : nullptr);
+    }
+    std::string s = text_of(key, fallback);
     if (std::find(allowed.begin(), allowed.end(), s) == allowed.end())
         fail(key, "unknown " + std::string(key) + " " + described(s) + suggestion(s, allowed));
     return s;
 }
 
-std::string ObjectReader::formula(std::string_view key, const std::optional<std::string>& fallback,
+std::string ObjectReader::formula(std::string_view key, const About& about,
+                                  const std::optional<std::string>& fallback,
                                   const std::vector<std::string>& variables)
 {
+    note_value(key, "formula", about, fallback);
     const Json* v = lookup(key, !fallback);
-    if (v != nullptr && v->number() != nullptr) return shortest(number(key));
+    if (v != nullptr && v->number() != nullptr) return shortest(number_of_kind("number", key, {}, {}));
     if (v != nullptr && v->string() == nullptr)
         fail(key, std::string(key) + " must be a number or an expression in a string, got " + described(*v));
-    std::string formula = text(key, fallback);
+    std::string formula = text_of(key, fallback);
     if (source.parameters != nullptr) try {
             record(key, formula = source.parameters->substituted(formula, variables));
         } catch (const ExpressionError& e) {
@@ -169,18 +264,22 @@ std::string ObjectReader::formula(std::string_view key, const std::optional<std:
     return formula;
 }
 
-std::string ObjectReader::formula_of_names(std::string_view key, const std::vector<std::string>& variables)
+std::string ObjectReader::formula_of_names(std::string_view key, const std::vector<std::string>& variables,
+                                           const About& about)
 {
-    std::string formula = text(key);
+    note(key, "formula_of_names", about);
+    std::string formula = text_of(key, {});
     if (formula.empty()) fail(key, std::string(key) + " must be an expression, got \"\"");
     if (source.parameters != nullptr) record(key, formula = source.parameters->replaced(formula, variables));
     return formula;
 }
 
-std::array<Expression, 3> ObjectReader::expressions(std::string_view key,
+std::array<Expression, 3> ObjectReader::expressions(std::string_view key, const About& about,
                                                     const std::vector<std::string>& variables)
 {
-    const Json::List& parts = list(key, true);
+    note(key, R"("type": "array", "items": {"$ref": "#/$defs/formula"}, "minItems": 3, "maxItems": 3)",
+         about);
+    const Json::List& parts = *lookup_list(key, true);
     if (parts.size() != 3) {
         std::string names;
         for (const std::string& name : variables) names += (names.empty() ? "" : ", ") + name;
@@ -208,21 +307,44 @@ std::array<Expression, 3> ObjectReader::expressions(std::string_view key,
     return all;
 }
 
-ObjectReader ObjectReader::object(std::string_view key) { return {source, *lookup(key, true), pointer(key)}; }
-
-const Json::List& ObjectReader::list(std::string_view key, bool required)
+ObjectReader ObjectReader::object(std::string_view key, const About& about, std::string_view definition)
 {
+    if (notes != nullptr) {
+        const std::string name(definition);
+        note(key, name.empty() ? R"("type": "object")" : R"("$ref": "#/$defs/)" + name + '"', about);
+    }
+    ObjectReader o(source, *lookup(key, true), pointer(key));
+    if (notes != nullptr && definition.empty()) o.notes = notes->inner(key);
+    return o;
+}
+
+const Json::List& ObjectReader::list(std::string_view key, bool required, const About& about)
+{
+    note(key, R"("type": "array")", about);
     static const Json::List empty;
+    const Json::List* const elements = lookup_list(key, required);
+    return elements != nullptr ? *elements : empty;
+}
+
+const Json::List* ObjectReader::lookup_list(std::string_view key, bool required)
+{
     const Json* v = lookup(key, required);
-    if (v == nullptr) return empty;
-    if (v->list() == nullptr) fail(key, std::string(key) + " must be a list, got " + described(*v));
-    return *v->list();
+    if (v != nullptr && v->list() == nullptr)
+        fail(key, std::string(key) + " must be a list, got " + described(*v));
+    return v != nullptr ? v->list() : nullptr;
+}
+
+const Json* ObjectReader::peek(std::string_view key) const
+{
+    const Json::Member* m = value.member(key);
+    return m != nullptr ? &m->value : nullptr;
 }
 
 const Json* ObjectReader::find(std::string_view key) { return lookup(key, false); }
 
 void ObjectReader::exclude(std::string_view key, std::string_view other)
 {
+    if (notes != nullptr) notes->exclude(std::string(key), std::string(other));
     const bool both = find(key) != nullptr && find(other) != nullptr;
     if (both) fail(other, "give one of " + std::string(key) + " and " + std::string(other) + ", not both");
 }
@@ -237,15 +359,17 @@ void ObjectReader::record(std::string_view key, Json as)
     recorded.push_back({std::string(key), 0, std::move(as)});
 }
 
-void ObjectReader::allow_schema()
+void ObjectReader::allow_schema(const About& about)
 {
+    note("$schema", R"("type": "string", "maxLength": 4096)", about);
     if (const Json* v = find("$schema"); v != nullptr && v->string() == nullptr)
         fail("$schema", "$schema must be a string, got " + described(*v));
 }
 
 Json ObjectReader::finish()
 {
-    if (find("note") != nullptr) text("note");
+    note("note", "note", {});
+    if (find("note") != nullptr) text_of("note", {});
     for (const Json::Member& m : *value.members())
         if (std::find(known.begin(), known.end(), m.key) == known.end()) fail_unknown_key(m);
     return std::move(recorded);
@@ -296,7 +420,10 @@ void ObjectReader::refuse_other_kinds(std::string_view key) const
 const Json* ObjectReader::lookup(std::string_view key, bool required)
 {
     if (std::find(known.begin(), known.end(), key) == known.end()) known.emplace_back(key);
+    if (notes != nullptr) notes->seen(key, required);
     if (const Json::Member* m = value.member(key)) return &m->value;
+    if (notes != nullptr && required)
+        if (const Json* const example = notes->example(key)) return example;
     if (required) fail_missing_key(key);
     return nullptr;
 }

@@ -212,36 +212,31 @@ const bool registered_height_map = io::Registry<SurfaceType>::add(
          {.description = "Terrain z = f(x, y) through samples on a regular grid, interpolated by a bicubic "
                          "spline with continuous second derivatives. The material is below. A contact "
                          "outside of the grid stops the run with an error.",
-          .parts = {"pose"},
-          .keys =
-              {{"heights",
-                "Samples of z [m]: row i and column j belong to x = corner[0] + i spacing[0] and y = "
-                "corner[1] + j spacing[1] of the surface frame. At least 4 rows of equal length, at least 4 "
-                "columns.",
-                R"("type": "array", "minItems": 4, "items": {"type": "array", "items": {"type": )"
-                R"("number"}, "minItems": 4}, "examples": [[[0, 0, 0, 0], [0, 0.1, 0.1, 0], [0, 0.1, 0.1, )"
-                R"(0], [0, 0, 0, 0]]])",
-                true},
-               {"spacing", "Distance of the samples along x and y [m].",
-                R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 2, )"
-                R"("maxItems": 2, "examples": [[0.5, 0.5]])",
-                true},
-               {"corner", "Coordinates x and y of the first sample [m], in the surface frame.",
-                R"("type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2, "default": )"
-                R"([0, 0], "examples": [[-0.75, -0.75]])"}},
-          .example = R"("heights": [[0, 0, 0, 0], [0, 0.1, 0.1, 0], [0, 0.1, 0.1, 0], [0, 0, 0, 0]], )"
-                     R"("spacing": [0.5, 0.5], "corner": [-0.75, -0.75])"},
+          .examples = {R"("heights": [[0, 0, 0, 0], [0, 0.1, 0.1, 0], [0, 0.1, 0.1, 0], [0, 0, 0, 0]], )"
+                       R"("spacing": [0.5, 0.5], "corner": [-0.75, -0.75])"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const MatrixXd heights = read_rows(o, "heights");
+         const MatrixXd heights = read_rows(
+             o, "heights", {},
+             {"Samples of z [m]: row i and column j belong to x = corner[0] + i spacing[0] and y = corner[1] "
+              "+ j spacing[1] of the surface frame. At least 4 rows of equal length, at least 4 columns.",
+              "[[0, 0, 0, 0], [0, 0.1, 0.1, 0], [0, 0.1, 0.1, 0], [0, 0, 0, 0]]",
+              R"("minItems": 4, "items": {"type": "array", "items": {"type": "number"}, "minItems": 4})"});
          if (std::min(heights.rows(), heights.cols()) < min_samples)
              o.fail("heights", "heights must have at least 4 rows of at least 4 numbers, got " +
                                    std::to_string(heights.rows()) + " of " + std::to_string(heights.cols()));
-         const std::vector<double> spacing = o.numbers("spacing", 2);
+         const std::vector<double> spacing =
+             o.numbers("spacing", 2,
+                       {"Distance of the samples along x and y [m].", "[0.5, 0.5]",
+                        R"("items": {"type": "number", "exclusiveMinimum": 0})"});
          if (!(spacing[0] > 0 && spacing[1] > 0))
              o.fail("spacing", "spacing must be positive, got " + dae::described(*o.find("spacing")));
          Vector2d corner = Vector2d::Zero();
-         if (o.has("corner"))
-             corner = Vector2d::Map(o.numbers("corner", 2).data());
+         if (o.given("corner"))
+             corner = Vector2d::Map(
+                 o.numbers("corner", 2,
+                           {"Coordinates x and y of the first sample [m], in the surface frame.",
+                            "[-0.75, -0.75]", R"("default": [0, 0])"})
+                     .data());
          else
              o.record("corner", dae::Json{0.0, 0.0});
          return std::make_shared<HeightMap>(heights, corner, Vector2d(spacing[0], spacing[1]));

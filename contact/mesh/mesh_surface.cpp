@@ -271,12 +271,21 @@ std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
 {
     o.exclude("file", "vertices");
     o.exclude("file", "triangles");
-    const std::string path = o.file("file");
+    const std::string path =
+        o.file("file", {"Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder "
+                        "of the model file, instead of vertices and triangles. Corners of an STL file with "
+                        "equal coordinates become one vertex. At most 64 MiB and 200000 triangles.",
+                        R"("stone.stl")", R"("minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$")"});
+    const io::About about_scale = {
+        "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.", "0.001"};
     double scale = 1;
+    o.note("scale", R"("type": "number", "exclusiveMinimum": 0, "default": 1)", about_scale);
     if (const dae::Json* v = o.find("scale"); v != nullptr) {
         scale = o.number_at(*v, o.pointer("scale"), "scale");
         if (!(scale > 0)) o.fail("scale", "scale must be positive, got " + dae::shortest(scale));
     }
+    for (const char* key : {"vertices", "triangles"}) o.record(key, {});  // their order in the canonical form
+    const bool concave = read_concave(o);
     try {
         MeshFile mesh = read_mesh_file(path);
         for (Vec3& x : mesh.vertices) x *= scale;
@@ -287,7 +296,6 @@ std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
         for (const Triangle& t : mesh.triangles) triangles.push_back(dae::json(Vec3(t[0], t[1], t[2])));
         o.record("vertices", std::move(vertices));
         o.record("triangles", std::move(triangles));
-        const bool concave = o.flag("concave", false);
         return std::make_shared<MeshSurface>(
             TriangleMesh(std::move(mesh.vertices), std::move(mesh.triangles)), concave);
     } catch (const dae::PlacedError&) {
@@ -306,7 +314,16 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
     if (o.has("scale")) o.fail("scale", "scale is for a mesh from a file");
     std::vector<Vec3> vertices;
     std::vector<Triangle> triangles;
-    const Eigen::MatrixXd x = read_rows(o, "vertices", 3), t = read_rows(o, "triangles", 3);
+    const Eigen::MatrixXd x =
+        read_rows(o, "vertices", 3,
+                  {"Vertices of the mesh [m], in the surface frame.",
+                   "[[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]",
+                   R"("minItems": 1, "items": {"$ref": "#/$defs/vector"})"});
+    const Eigen::MatrixXd t = read_rows(
+        o, "triangles", 3,
+        {"Triangles as triples of vertex numbers counted from 0, counterclockwise seen from outside.",
+         "[[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]",
+         R"("minItems": 1, "items": {"type": "array", "items": {"type": "integer", "minimum": 0}, "minItems": 3, "maxItems": 3})"});
     for (Eigen::Index k = 0; k < x.rows(); ++k) vertices.emplace_back(x.row(k).transpose());
     for (Eigen::Index k = 0; k < t.rows(); ++k) {
         Triangle triangle;
@@ -322,7 +339,7 @@ std::shared_ptr<const Surface> read(dae::ObjectReader& o)
     }
     if (const auto fault = TriangleMesh::fault(vertices, triangles))
         o.fail(fault->of_vertices ? "vertices" : "triangles", fault->what);
-    const bool concave = o.flag("concave", false);
+    const bool concave = read_concave(o);
     try {
         return std::make_shared<MeshSurface>(TriangleMesh(std::move(vertices), std::move(triangles)),
                                              concave);
@@ -338,34 +355,17 @@ const bool registered_mesh_surface = io::Registry<SurfaceType>::add(
                          "normal and curvature are continuous. The mesh must be fine enough: sharp edges and "
                          "too few vertices are rejected, and the message names the vertex. The example shows "
                          "the format only; it has too few vertices.",
-          .parts = {"pose"},
-          .keys =
-              {{"vertices", "Vertices of the mesh [m], in the surface frame.",
-                R"("type": "array", "minItems": 1, "items": {"$ref": "#/$defs/vector"}, "examples": [[[1, )"
-                R"(0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]]])"},
-               {"triangles",
-                "Triangles as triples of vertex numbers counted from 0, counterclockwise seen from outside.",
-                R"("type": "array", "minItems": 1, "items": {"type": "array", "items": {"type": )"
-                R"("integer", "minimum": 0}, "minItems": 3, "maxItems": 3}, "examples": [[[0, 1, 2], [1, )"
-                R"(3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]])"},
-               {"file",
-                "Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder of the "
-                "model file, instead of vertices and triangles. Corners of an STL file with equal "
-                "coordinates become one vertex. At most 64 MiB and 200000 triangles.",
-                R"("type": "string", "minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$", )"
-                R"("examples": ["stone.stl"])"},
-               {"scale", "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.",
-                R"("type": "number", "exclusiveMinimum": 0, "default": 1, "examples": [0.001])"},
-               concave_key},
-          .example =
-              R"("vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], )"
-              R"("triangles": [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, )"
-              R"(5], [0, 4, 5]])",
+          .examples =
+              {R"("vertices": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], )"
+               R"("triangles": [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, )"
+               R"(5], [0, 4, 5]])",
+               R"("file": "stone.stl", "scale": 0.001)"},
           .rest = R"("oneOf": [{"required": ["vertices", "triangles"], "not": {"required": ["file"]}}, )"
                   R"({"required": ["file"], )"
                   R"("not": {"anyOf": [{"required": ["vertices"]}, {"required": ["triangles"]}]}}], )"
                   R"("dependentRequired": {"scale": ["file"]})"},
-     .read = read});
+     .read = read,
+     .format_only = true});
 
 }  // namespace
 

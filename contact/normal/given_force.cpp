@@ -15,17 +15,14 @@ namespace {
 
 std::shared_ptr<const NormalLaw> read_given_force(dae::ObjectReader& o)
 {
-    return std::make_shared<GivenForce>(o.not_negative("force"));
+    return std::make_shared<GivenForce>(o.not_negative("force", {"Normal force N [N].", "9.81"}));
 }
 
 const bool registered_given_force = io::Registry<NormalLawType>::add(
     {.name = "given",
      .schema = {.description = "Prescribed constant normal force, independent of the overlap. It models "
                                "surfaces that are pressed together by a known force.",
-                .keys = {{"force", "Normal force N [N].",
-                          R"("type": "number", "minimum": 0, "examples": [9.81])", true},
-                         dae::note_key},
-                .example = R"("force": 9.81)"},
+                .examples = {R"("force": 9.81)"}},
      .read = read_given_force,
      .elastic = false});
 

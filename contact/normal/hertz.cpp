@@ -42,9 +42,9 @@ double Hertz::force(const NormalInput& p) const
 
 namespace {
 
-double poisson_ratio(dae::ObjectReader& o, std::string_view key)
+double poisson_ratio(dae::ObjectReader& o, std::string_view key, std::string_view text)
 {
-    const double nu = o.number(key);
+    const double nu = o.number(key, {text, "0.3", R"("exclusiveMinimum": -1, "maximum": 0.5)"});
     if (!(nu > -1 && nu <= 0.5))
         o.fail(key, std::string(key) + " must be above -1 and at most 0.5, got " + dae::shortest(nu));
     return nu;
@@ -55,13 +55,20 @@ std::shared_ptr<const NormalLaw> read_hertz(dae::ObjectReader& o)
     for (const char* key : {"E_i", "nu_i", "E_j", "nu_j"}) o.exclude("E_star", key);
     double E_star = 0;
     if (o.has("E_i") || o.has("E_j")) {
-        const double E_i = o.positive("E_i"), nu_i = poisson_ratio(o, "nu_i");
-        const double E_j = o.positive("E_j"), nu_j = poisson_ratio(o, "nu_j");
+        const double E_i = o.positive("E_i", {"Young's modulus of body i [Pa].", "7e10"}),
+                     nu_i = poisson_ratio(o, "nu_i", "Poisson's ratio of body i [-].");
+        const double E_j = o.positive("E_j", {"Young's modulus of body j [Pa].", "2.1e11"}),
+                     nu_j = poisson_ratio(o, "nu_j", "Poisson's ratio of body j [-].");
         E_star = effective_modulus(E_i, nu_i, E_j, nu_j);
     } else {
-        E_star = o.positive("E_star");
+        E_star = o.positive(
+            "E_star", {"Effective modulus E* [Pa], 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j.", "1e7"});
     }
-    return std::make_shared<Hertz>(E_star, o.fraction("restitution", 1));
+    return std::make_shared<Hertz>(E_star, o.fraction("restitution",
+                                                      {"Coefficient of restitution e [-]. It determines the "
+                                                       "damping c; values below 1e-6 are treated as 1e-6.",
+                                                       "0.5"},
+                                                      1));
 }
 
 const bool registered_hertz = io::Registry<NormalLawType>::add(
@@ -71,26 +78,9 @@ const bool registered_hertz = io::Registry<NormalLawType>::add(
               "Hertzian contact with damping: N = 4/3 E* sqrt(R) delta^(3/2) + c deltadot for overlap delta "
               "> 0 (Fang 2022, Eq. 2.42). R is the effective radius, 1/R the sum of the mean curvatures of "
               "both surfaces. N is never negative. Give either E_star or all of E_i, nu_i, E_j and nu_j.",
-          .keys = {{"E_star", "Effective modulus E* [Pa], 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j.",
-                    R"("type": "number", "exclusiveMinimum": 0, "examples": [1e7])"},
-                   {"E_i", "Young's modulus of body i [Pa].",
-                    R"("type": "number", "exclusiveMinimum": 0, "examples": [7e10])"},
-                   {"nu_i", "Poisson's ratio of body i [-].",
-                    R"("type": "number", "exclusiveMinimum": -1, "maximum": 0.5, "examples": [0.3])"},
-                   {"E_j", "Young's modulus of body j [Pa].",
-                    R"("type": "number", "exclusiveMinimum": 0, "examples": [2.1e11])"},
-                   {"nu_j", "Poisson's ratio of body j [-].",
-                    R"("type": "number", "exclusiveMinimum": -1, "maximum": 0.5, "examples": [0.3])"},
-                   {"restitution",
-                    "Coefficient of restitution e [-]. It determines the damping c; values below 1e-6 are "
-                    "treated as 1e-6.",
-                    R"("type": "number", "minimum": 0, "maximum": 1, "default": 1, "examples": [0.5])"},
-                   dae::note_key},
-          .example = R"("E_star": 1e7, "restitution": 0.5)",
-          .rest = R"("oneOf": [{"required": ["E_star"]}, {"required": ["E_i", "nu_i", "E_j", "nu_j"]}], )"
-                  R"("dependentSchemas": {"E_star": {"allOf": [{"not": {"required": ["E_i"]}}, {"not": )"
-                  R"({"required": ["nu_i"]}}, {"not": {"required": ["E_j"]}}, {"not": {"required": )"
-                  R"(["nu_j"]}}]}})"},
+          .examples = {R"("E_star": 1e7, "restitution": 0.5)",
+                       R"("E_i": 7e10, "nu_i": 0.3, "E_j": 2.1e11, "nu_j": 0.3)"},
+          .rest = R"("oneOf": [{"required": ["E_star"]}, {"required": ["E_i", "nu_i", "E_j", "nu_j"]}])"},
      .read = read_hertz});
 
 }  // namespace

@@ -33,10 +33,15 @@ namespace {
 std::shared_ptr<const NormalLaw> read_hooke(dae::ObjectReader& o)
 {
     o.exclude("damping", "restitution");
-    const double stiffness = o.positive("stiffness");
+    const double stiffness = o.positive("stiffness", {"Stiffness k [N/m].", "1e5"});
     if (o.has("restitution"))
-        return std::make_shared<Hooke>(Hooke::with_restitution(stiffness, o.fraction("restitution", 1)));
-    return std::make_shared<Hooke>(stiffness, o.not_negative("damping", 0));
+        return std::make_shared<Hooke>(Hooke::with_restitution(
+            stiffness, o.fraction("restitution",
+                                  {"Coefficient of restitution e [-]. It determines the damping c from the "
+                                   "effective mass of the two bodies; values below 1e-6 are treated as 1e-6.",
+                                   "0.5"})));
+    return std::make_shared<Hooke>(stiffness,
+                                   o.not_negative("damping", {"Damping coefficient c [N s/m].", "10"}, 0));
 }
 
 const bool registered_hooke = io::Registry<NormalLawType>::add(
@@ -44,17 +49,8 @@ const bool registered_hooke = io::Registry<NormalLawType>::add(
      .schema = {.description =
                     "Linear spring and damper: N = k delta + c deltadot for overlap delta > 0 (Fang 2022, "
                     "Eq. 2.41). N is never negative. At most one of damping and restitution may be given.",
-                .keys = {{"stiffness", "Stiffness k [N/m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [1e5])", true},
-                         {"damping", "Damping coefficient c [N s/m].",
-                          R"("type": "number", "minimum": 0, "default": 0, "examples": [10])"},
-                         {"restitution",
-                          "Coefficient of restitution e [-]. It determines the damping c from the effective "
-                          "mass of the two bodies; values below 1e-6 are treated as 1e-6.",
-                          R"("type": "number", "minimum": 0, "maximum": 1, "examples": [0.5])"},
-                         dae::note_key},
-                .example = R"("stiffness": 1e5, "restitution": 0.5)",
-                .rest = R"("not": {"required": ["damping", "restitution"]})"},
+                .examples = {R"("stiffness": 1e5, "restitution": 0.5)",
+                             R"("stiffness": 1e5, "damping": 10)"}},
      .read = read_hooke});
 
 }  // namespace

@@ -62,21 +62,17 @@ namespace {
 
 const bool registered_cone = io::Registry<SurfaceType>::add(
     {.name = "cone",
-     .schema =
-         {.description = "Infinite circular cone. Its apex is at the origin of the surface frame and it "
-                         "opens along z. The apex itself cannot be a contact point.",
-          .parts = {"pose_by_axis"},
-          .keys = {{"half_angle", "Angle between axis and side [rad].",
-                    R"("type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966, )"
-                    R"("examples": [0.5])",
-                    true},
-                   concave_key},
-          .example = R"("half_angle": 0.5, "concave": true, "axis": [0, 0, 1])"},
+     .schema = {.description =
+                    "Infinite circular cone. Its apex is at the origin of the surface frame and it "
+                    "opens along z. The apex itself cannot be a contact point.",
+                .examples = {R"("half_angle": 0.5, "concave": true, "axis": [0, 0, 1])"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const double beta = o.number("half_angle");
+         const double beta =
+             o.number("half_angle", {"Angle between axis and side [rad].", "0.5",
+                                     R"("exclusiveMinimum": 0, "exclusiveMaximum": 1.5707963267948966)"});
          if (!angle_allowed(beta))
              o.fail("half_angle", "half_angle must be between 0 and pi/2, got " + dae::shortest(beta));
-         return std::make_shared<Cone>(beta, o.flag("concave", false));
+         return std::make_shared<Cone>(beta, read_concave(o));
      },
      .z = "axis"});
 

@@ -38,19 +38,15 @@ PolygonMesh Cylinder::drawing(const DrawingExtent& extent) const
 
 namespace {
 
-const bool registered_cylinder = io::Registry<SurfaceType>::add(
-    {.name = "cylinder",
-     .schema = {.description = "Infinite circular cylinder about z.",
-                .parts = {"pose_by_axis"},
-                .keys = {{"radius", "Radius [m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
-                         concave_key},
-                .example = R"("radius": 0.1, "axis": [0, 1, 0])"},
-     .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const double R = o.positive("radius");
-         return std::make_shared<Cylinder>(R, o.flag("concave", false));
-     },
-     .z = "axis"});
+const bool registered_cylinder =
+    io::Registry<SurfaceType>::add({.name = "cylinder",
+                                    .schema = {.description = "Infinite circular cylinder about z.",
+                                               .examples = {R"("radius": 0.1, "axis": [0, 1, 0])"}},
+                                    .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
+                                        const double R = o.positive("radius", {"Radius [m].", "0.1"});
+                                        return std::make_shared<Cylinder>(R, read_concave(o));
+                                    },
+                                    .z = "axis"});
 
 }  // namespace
 

@@ -43,12 +43,9 @@ const bool registered_disk = io::Registry<SurfaceType>::add(
     {.name = "disk",
      .schema = {.description = "Thin disk that touches with its rim: the circle about z in the plane z = 0 "
                                "of the surface frame. The other surface must be a plane.",
-                .parts = {"pose_by_axis"},
-                .keys = {{"radius", "Radius [m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true}},
-                .example = R"("radius": 0.25, "axis": [1, 0, 0])"},
+                .examples = {R"("radius": 0.25, "axis": [1, 0, 0])"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         return std::make_shared<Disk>(o.positive("radius"));
+         return std::make_shared<Disk>(o.positive("radius", {"Radius [m].", "0.1"}));
      },
      .z = "axis"});
 

@@ -56,18 +56,11 @@ namespace {
 
 const bool registered_ellipsoid = io::Registry<SurfaceType>::add(
     {.name = "ellipsoid",
-     .schema =
-         {.description = "Ellipsoid with its centre at the origin of the surface frame.",
-          .parts = {"pose"},
-          .keys = {{"semi_axes", "Semi-axes along x, y and z of the surface frame [m].",
-                    R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, )"
-                    R"("maxItems": 3, "examples": [[2.5, 3, 2]])",
-                    true},
-                   concave_key},
-          .example = R"("semi_axes": [2.5, 3, 2], "concave": true)"},
+     .schema = {.description = "Ellipsoid with its centre at the origin of the surface frame.",
+                .examples = {R"("semi_axes": [2.5, 3, 2], "concave": true)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Vec3 semi_axes = read_semi_axes(o);
-         return std::make_shared<Ellipsoid>(semi_axes, o.flag("concave", false));
+         return std::make_shared<Ellipsoid>(semi_axes, read_concave(o));
      }});
 
 }  // namespace

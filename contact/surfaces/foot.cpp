@@ -21,8 +21,7 @@ const bool registered_foot = io::Registry<SurfaceType>::add(
          {.description =
               "Flat face that touches at the origin of the surface frame only; the whole load acts there. It "
               "models the base of a body that slides without tipping. The other surface must be a plane.",
-          .parts = {"pose_by_normal"},
-          .example = R"("position": [0, 0, -0.05], "normal": [0, 0, -1])"},
+          .examples = {R"("position": [0, 0, -0.05], "normal": [0, 0, -1])"}},
      .read = [](dae::ObjectReader&) -> std::shared_ptr<const Surface> { return std::make_shared<Foot>(); },
      .z = "normal"});
 

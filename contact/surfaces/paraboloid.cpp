@@ -69,21 +69,18 @@ namespace {
 
 const bool registered_paraboloid = io::Registry<SurfaceType>::add(
     {.name = "paraboloid",
-     .schema =
-         {.description = "Paraboloid z = (x^2/R_x + y^2/R_y)/2 with its vertex at the origin of the surface "
-                         "frame. It opens along z.",
-          .parts = {"pose_by_axis"},
-          .keys = {{"radii", "Radii of curvature R_x and R_y at the vertex [m].",
-                    R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 2, )"
-                    R"("maxItems": 2, "examples": [[1, 1.5]])",
-                    true},
-                   concave_key},
-          .example = R"("radii": [1, 1.5], "concave": true)"},
+     .schema = {.description =
+                    "Paraboloid z = (x^2/R_x + y^2/R_y)/2 with its vertex at the origin of the surface "
+                    "frame. It opens along z.",
+                .examples = {R"("radii": [1, 1.5], "concave": true)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const std::vector<double> R = o.numbers("radii", 2);
+         const std::vector<double> R =
+             o.numbers("radii", 2,
+                       {"Radii of curvature R_x and R_y at the vertex [m].", "[1, 1.5]",
+                        R"("items": {"type": "number", "exclusiveMinimum": 0})"});
          if (!(R[0] > 0 && R[1] > 0))
              o.fail("radii", "radii must be positive, got " + dae::described(*o.find("radii")));
-         return std::make_shared<Paraboloid>(R[0], R[1], o.flag("concave", false));
+         return std::make_shared<Paraboloid>(R[0], R[1], read_concave(o));
      },
      .z = "axis"});
 

@@ -16,8 +16,7 @@ namespace {
 const bool registered_plane = io::Registry<SurfaceType>::add(
     {.name = "plane",
      .schema = {.description = "Plane through the origin of the surface frame with the outward normal z.",
-                .parts = {"pose_by_normal"},
-                .example = R"("normal": [0, 0, 1])"},
+                .examples = {R"("normal": [0, 0, 1])"}},
      .read = [](dae::ObjectReader&) -> std::shared_ptr<const Surface> { return std::make_shared<Plane>(); },
      .z = "normal"});
 

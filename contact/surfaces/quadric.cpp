@@ -98,24 +98,17 @@ const bool registered_quadric = io::Registry<SurfaceType>::add(
     {.name = "quadric",
      .schema = {.description = "Surface G = a^T Q a + 2 b . a + c = 0 of the second degree, with a in the "
                                "surface frame. The material is where G is negative.",
-                .parts = {"pose"},
-                .keys = {{"Q",
-                          "Symmetric matrix Q, in the surface frame. It must not be zero. Its unit is free; "
-                          "it determines the units of b and c.",
-                          R"("$ref": "#/$defs/matrix", "examples": [[[1, 0, 0], [0, 1, 0], [0, 0, -1]]])",
-                          true},
-                         {"b", "Vector b, in the surface frame. Its unit is the unit of Q times m.",
-                          R"("$ref": "#/$defs/vector", "default": [0, 0, 0], "examples": [[0, 0, 0]])"},
-                         {"c", "Constant c. Its unit is the unit of Q times m^2.",
-                          R"("type": "number", "examples": [-0.01])", true},
-                         concave_key},
-                .example = R"("Q": [[1, 0, 0], [0, 1, 0], [0, 0, -1]], "c": -0.01)"},
+                .examples = {R"("Q": [[1, 0, 0], [0, 1, 0], [0, 0, -1]], "c": -0.01)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const Mat3 Q = o.matrix("Q");
-         const Vec3 b = o.vec3("b", Vec3::Zero());
-         const double c = o.number("c");
+         const Mat3 Q = o.matrix("Q", {"Symmetric matrix Q, in the surface frame. It must not be zero. Its "
+                                       "unit is free; it determines the units of b and c.",
+                                       "[[1, 0, 0], [0, 1, 0], [0, 0, -1]]"});
+         const Vec3 b =
+             o.vec3("b", {"Vector b, in the surface frame. Its unit is the unit of Q times m.", "[0, 0, 0]"},
+                    Vec3::Zero());
+         const double c = o.number("c", {"Constant c. Its unit is the unit of Q times m^2.", "-0.01"});
          if (const std::string what = Quadric::fault(Q, b, c); !what.empty()) o.fail("Q", what);
-         return std::make_shared<Quadric>(Q, b, c, o.flag("concave", false));
+         return std::make_shared<Quadric>(Q, b, c, read_concave(o));
      }});
 
 }  // namespace

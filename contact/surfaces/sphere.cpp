@@ -28,14 +28,10 @@ namespace {
 const bool registered_sphere = io::Registry<SurfaceType>::add(
     {.name = "sphere",
      .schema = {.description = "Sphere with its centre at the origin of the surface frame.",
-                .parts = {"pose"},
-                .keys = {{"radius", "Radius [m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
-                         concave_key},
-                .example = R"("radius": 0.1)"},
+                .examples = {R"("radius": 0.1)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const double R = o.positive("radius");
-         return std::make_shared<Sphere>(R, o.flag("concave", false));
+         const double R = o.positive("radius", {"Radius [m].", "0.1"});
+         return std::make_shared<Sphere>(R, read_concave(o));
      }});
 
 }  // namespace

@@ -86,29 +86,29 @@ namespace {
 
 const bool registered_superquadric = io::Registry<SurfaceType>::add(
     {.name = "superquadric",
-     .schema =
-         {.description = "Superquadric |x/a|^p + |y/b|^p + |z/c|^q = 1: an ellipsoid for p = q = 2; a box "
-                         "with rounded edges for large p and q.",
-          .parts = {"pose"},
-          .keys = {{"semi_axes", "Semi-axes along x, y and z of the surface frame [m].",
-                    R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, )"
-                    R"("maxItems": 3, "examples": [[2.5, 3, 2]])",
-                    true},
-                   {"exponent", "Exponent p in the x-y plane [-].",
-                    R"("type": "number", "minimum": 2, "maximum": 100, "examples": [8])", true},
-                   {"exponent_z", "Exponent q along z [-]. By default equal to exponent.",
-                    R"("type": "number", "minimum": 2, "maximum": 100, "examples": [2])"}},
-          .example = R"("semi_axes": [0.3, 0.2, 0.1], "exponent": 8, "exponent_z": 4)"},
+     .schema = {.description =
+                    "Superquadric |x/a|^p + |y/b|^p + |z/c|^q = 1: an ellipsoid for p = q = 2; a box "
+                    "with rounded edges for large p and q.",
+                .examples = {R"("semi_axes": [0.3, 0.2, 0.1], "exponent": 8, "exponent_z": 4)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
          const Vec3 semi_axes = read_semi_axes(o);
-         const auto exponent = [&](const char* key, std::optional<double> fallback = {}) {
-             const double p = o.number(key, fallback);
+         const auto exponent = [&](const char* key, const io::About& about,
+                                   std::optional<double> fallback = {}) {
+             const double p = o.number(key, about, fallback);
              if (!exponent_allowed(p))
                  o.fail(key, std::string(key) + " must be between 2 and 100, got " + dae::shortest(p));
              return p;
          };
-         const double p = exponent("exponent");
-         return std::make_shared<Superquadric>(semi_axes, p, exponent("exponent_z", p));
+         constexpr const char* range = R"("minimum": 2, "maximum": 100)";
+         const double p = exponent("exponent", {"Exponent p in the x-y plane [-].", "8", range});
+         return std::make_shared<Superquadric>(
+             semi_axes, p,
+             exponent("exponent_z",
+                      {.text = "Exponent q along z [-]. By default equal to exponent.",
+                       .example = "2",
+                       .rest = range,
+                       .computed = true},
+                      p));
      }});
 
 }  // namespace

@@ -76,18 +76,14 @@ const bool registered_torus = io::Registry<SurfaceType>::add(
     {.name = "torus",
      .schema = {.description = "Torus about z: a tube along a circle in the plane z = 0 of the surface "
                                "frame. The tube must be thinner than the ring.",
-                .parts = {"pose_by_axis"},
-                .keys = {{"ring_radius", "Radius of the circle of tube centres [m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.3])", true},
-                         {"tube_radius", "Radius of the tube [m]. It must be less than ring_radius.",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.05])", true},
-                         concave_key},
-                .example = R"("ring_radius": 0.3, "tube_radius": 0.05)"},
+                .examples = {R"("ring_radius": 0.3, "tube_radius": 0.05)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const Surface> {
-         const double R = o.positive("ring_radius"), r = o.positive("tube_radius");
+         const double R = o.positive("ring_radius", {"Radius of the circle of tube centres [m].", "0.3"}),
+                      r = o.positive("tube_radius",
+                                     {"Radius of the tube [m]. It must be less than ring_radius.", "0.05"});
          if (!(r < R))
              o.fail("tube_radius", "tube_radius must be less than ring_radius, got " + dae::shortest(r));
-         return std::make_shared<Torus>(R, r, o.flag("concave", false));
+         return std::make_shared<Torus>(R, r, read_concave(o));
      },
      .z = "axis"});
 

@@ -13,23 +13,24 @@ const TypeSchema schema_dp1 = {
         "First dot-product constraint, one row: a_i . a_j = f(t) (Fang 2022, Eq. 2.5a). It "
         "prescribes the angle between a vector of body i and a vector of body j. It loses rank if "
         "the vectors become parallel.",
-    .parts = {"derivatives"},
-    .keys = {{"a_bar_i", "Vector a_i [-], in the frame of body i. It is not normalised.",
-              R"("$ref": "#/$defs/direction", "examples": [[1, 0, 0]])", true},
-             {"a_bar_j", "Vector a_j [-], in the frame of body j. It is not normalised.",
-              R"("$ref": "#/$defs/direction", "examples": [[0, 1, 0]])", true},
-             {"f", "Prescribed value f(t) [-]. At the start |f| must be less than |a_i| |a_j|.",
-              R"("$ref": "#/$defs/motion", "default": "0", )"
-              R"-("examples": ["cos(pi/2 + 0.1*t)"])-"}},
-    .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [1, 0, 0], )"
-               R"-("a_bar_j": [0, 1, 0], "f": "sin(0.1*t)")-"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "a_bar_i": [1, 0, 0], )"
+                 R"-("a_bar_j": [0, 1, 0], "f": "sin(0.1*t)")-"}};
 
 const bool registered_dp1 = io::Registry<ConstraintType>::add(
     {.name = "DP1",
      .schema = schema_dp1,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          return single_row(
-             DP1{i, o.direction("a_bar_i"), j, o.direction("a_bar_j"), read_driver(o, "f", "0")});
+             DP1{i,
+                 o.direction("a_bar_i",
+                             {"Vector a_i [-], in the frame of body i. It is not normalised.", "[1, 0, 0]"}),
+                 j,
+                 o.direction("a_bar_j",
+                             {"Vector a_j [-], in the frame of body j. It is not normalised.", "[0, 1, 0]"}),
+                 read_value(o,
+                            {"Prescribed value f(t) [-]. At the start |f| must be less than |a_i| |a_j|.",
+                             R"-("cos(pi/2 + 0.1*t)")-"},
+                            "0")});
      }});
 
 }  // namespace

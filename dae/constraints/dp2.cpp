@@ -12,21 +12,20 @@ const TypeSchema schema_dp2 = {
     .description =
         "Second dot-product constraint, one row: a_i . d_ij = f(t) (Fang 2022, Eq. 2.5b). d_ij is "
         "the vector from point P to point Q.",
-    .parts = {"points", "derivatives"},
-    .keys = {{"a_bar_i", "Vector a_i [-], in the frame of body i. It is not normalised.",
-              R"("$ref": "#/$defs/direction", "examples": [[0, 0, 1]])", true},
-             {"f", "Prescribed value f(t) [m], times the length of a_i.",
-              R"-("$ref": "#/$defs/motion", "default": "0", "examples": ["0.1*sin(t)"])-"}},
-    .example = R"("body_i": "crank", "body_j": "rod", "a_bar_i": [0, 0, 1], )"
-               R"("s_bar_p_i": [0, 0.1, 0])"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "a_bar_i": [0, 0, 1], )"
+                 R"("s_bar_p_i": [0, 0.1, 0])"}};
 
 const bool registered_dp2 = io::Registry<ConstraintType>::add(
     {.name = "DP2",
      .schema = schema_dp2,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
-         const Vec3 a_bar_i = o.direction("a_bar_i");
+         const Vec3 a_bar_i = o.direction(
+             "a_bar_i", {"Vector a_i [-], in the frame of body i. It is not normalised.", "[0, 0, 1]"});
          const Points s(o);
-         return single_row(DP2(i, a_bar_i, s.i, j, s.j, read_driver(o, "f", "0")));
+         return single_row(
+             DP2(i, a_bar_i, s.i, j, s.j,
+                 read_value(o, {"Prescribed value f(t) [m], times the length of a_i.", R"-("0.1*sin(t)")-"},
+                            "0")));
      }});
 
 }  // namespace

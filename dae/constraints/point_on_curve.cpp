@@ -126,27 +126,26 @@ const TypeSchema schema_point_on_curve = {
         "Point on a curve, 2 rows: point P of body i stays on a curve that is fixed in body j and given "
         "by its coordinates as functions of a parameter s. The curve must be smooth and have a tangent "
         "everywhere.",
-    .keys = {{"s_bar_p_i",
-              "Position of point P relative to the centre of mass of body i [m], in the frame of body i.",
-              R"("$ref": "#/$defs/vector", "default": [0, 0, 0], "examples": [[0, 0.1, 0]])"},
-             {"curve",
-              "Coordinates of the curve relative to the centre of mass of body j [m], in the frame of body "
-              "j: three "
-              "numbers or expressions in s.",
-              R"("type": "array", "items": {"$ref": "#/$defs/formula"}, "minItems": 3, "maxItems": 3, )"
-              R"-("examples": [["cos(s)", "sin(s)", "0.1*s"]])-",
-              true},
-             {"s", "Parameter of a point of the curve near P at the start [-].",
-              R"("type": "number", "default": 0, "examples": [1.5])"}},
-    .example = R"-("body_i": "bead", "body_j": "ground", "curve": ["cos(s)", "sin(s)", 0], "s": 0.5)-"};
+    .examples = {R"-("body_i": "bead", "body_j": "ground", "curve": ["cos(s)", "sin(s)", 0], "s": 0.5)-"}};
 
 const bool registered_point_on_curve = io::Registry<ConstraintType>::add(
     {.name = "point-on-curve",
      .schema = schema_point_on_curve,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
-         const Vec3 s_bar_i = o.vec3("s_bar_p_i", Vec3::Zero());
-         std::array<io::Expression, 3> curve = o.expressions("curve", {"s"});
-         return std::make_unique<PointOnCurve>(i, s_bar_i, j, std::move(curve), o.number("s", 0));
+         const Vec3 s_bar_i = o.vec3(
+             "s_bar_p_i",
+             {"Position of point P relative to the centre of mass of body i [m], in the frame of body i.",
+              "[0, 0.1, 0]"},
+             Vec3::Zero());
+         std::array<io::Expression, 3> curve =
+             o.expressions("curve",
+                           {"Coordinates of the curve relative to the centre of mass of body j [m], in the "
+                            "frame of body j: three numbers or expressions in s.",
+                            R"-(["cos(s)", "sin(s)", "0.1*s"])-"},
+                           {"s"});
+         return std::make_unique<PointOnCurve>(
+             i, s_bar_i, j, std::move(curve),
+             o.number("s", {"Parameter of a point of the curve near P at the start [-].", "1.5"}, 0));
      }});
 
 }  // namespace

@@ -210,22 +210,13 @@ const TypeSchema schema_bushing = {
         "deflection is the vector from P to Q and the rotation vector of body j relative to body i since "
         "the start, in the frame of body i and of body j at the start. The run stops with an error at a "
         "relative rotation of 3 rad.",
-    .parts = {"points", "implicit_spring"},
-    .keys = {{"stiffness", "Stiffness along the axes of body i [N/m].",
-              R"("$ref": "#/$defs/coefficients", "examples": [[1e5, 1e5, 1e4]])", true},
-             {"damping", "Damping coefficients along the axes of body i [N s/m].",
-              R"("$ref": "#/$defs/coefficients", "default": [0, 0, 0], "examples": [[100, 100, 10]])"},
-             {"rotational_stiffness", "Stiffness for the components of the rotation vector [N m/rad].",
-              R"("$ref": "#/$defs/coefficients", "examples": [[50, 50, 5]])", true},
-             {"rotational_damping",
-              "Damping coefficients for the components of the rotation vector [N m s/rad].",
-              R"("$ref": "#/$defs/coefficients", "default": [0, 0, 0], "examples": [[0.1, 0.1, 0.1]])"}},
-    .example = R"("body_i": "ground", "body_j": "rod", "stiffness": [1e5, 1e5, 1e4], )"
-               R"("rotational_stiffness": [50, 50, 5])"};
+    .examples = {R"("body_i": "ground", "body_j": "rod", "stiffness": [1e5, 1e5, 1e4], )"
+                 R"("rotational_stiffness": [50, 50, 5])"}};
 
-Vec3 not_negative(ObjectReader& o, const char* key, const std::optional<Vec3>& fallback = {})
+Vec3 not_negative(ObjectReader& o, const char* key, About about, const std::optional<Vec3>& fallback = {})
 {
-    Vec3 k = o.vec3(key, fallback);
+    about.rest = R"("$ref": "#/$defs/coefficients")";
+    Vec3 k = o.vec3(key, about, fallback);
     if (!(k.minCoeff() >= 0))
         o.fail(key, std::string(key) + " must not have negative components, got " + described(*o.find(key)));
     return k;
@@ -238,9 +229,19 @@ const bool registered_bushing = io::Registry<ForceType>::add(
          const auto [i, j] = bodies.pair(o);
          const Points s(o);
          Bushing::Coefficients c;
-         c.stiffness = not_negative(o, "stiffness"), c.damping = not_negative(o, "damping", Vec3::Zero());
-         c.rotational_stiffness = not_negative(o, "rotational_stiffness");
-         c.rotational_damping = not_negative(o, "rotational_damping", Vec3::Zero());
+         c.stiffness =
+             not_negative(o, "stiffness", {"Stiffness along the axes of body i [N/m].", "[1e5, 1e5, 1e4]"});
+         c.damping = not_negative(
+             o, "damping", {"Damping coefficients along the axes of body i [N s/m].", "[100, 100, 10]"},
+             Vec3::Zero());
+         c.rotational_stiffness =
+             not_negative(o, "rotational_stiffness",
+                          {"Stiffness for the components of the rotation vector [N m/rad].", "[50, 50, 5]"});
+         c.rotational_damping =
+             not_negative(o, "rotational_damping",
+                          {"Damping coefficients for the components of the rotation vector [N m s/rad].",
+                           "[0.1, 0.1, 0.1]"},
+                          Vec3::Zero());
          return std::make_unique<Bushing>(i, s.i, j, s.j, c, x);
      }});
 

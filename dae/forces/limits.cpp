@@ -92,17 +92,23 @@ void DistanceLimit::values(const State& x, double* out) const
 namespace {
 
 /// The keys of a stop. At least one limit must be given.
-Stop read_stop(ObjectReader& o)
+/// The texts of the keys
+struct StopKeys {
+    About minimum, maximum, stiffness, damping;
+};
+
+Stop read_stop(ObjectReader& o, const StopKeys& about)
 {
     Stop stop;
-    if (o.has("minimum")) stop.minimum = o.number("minimum");
-    if (o.has("maximum")) stop.maximum = o.number("maximum");
-    if (!o.has("minimum") && !o.has("maximum")) o.fail("one of the keys minimum and maximum must be given");
+    if (o.given("minimum")) stop.minimum = o.number("minimum", about.minimum);
+    if (o.given("maximum")) stop.maximum = o.number("maximum", about.maximum);
+    if (!o.given("minimum") && !o.given("maximum"))
+        o.fail("one of the keys minimum and maximum must be given");
     if (!(stop.minimum < stop.maximum))
         o.fail("maximum", "maximum must be above minimum = " + shortest(stop.minimum) + ", got " +
                               shortest(stop.maximum));
-    stop.stiffness = o.positive("stiffness");
-    stop.damping = o.not_negative("damping", 0);
+    stop.stiffness = o.positive("stiffness", about.stiffness);
+    stop.damping = o.not_negative("damping", about.damping, 0);
     return stop;
 }
 
@@ -111,15 +117,8 @@ const TypeSchema distance_schema = {
         "Compliant limits of the distance l of points P and Q. Beyond a limit, by delta, the force "
         "k delta max(0, 1 + d deltadot) pushes the points back; within the limits there is no force. It "
         "models a slack rope, a bump stop or a telescope. At least one limit must be given.",
-    .parts = {"points"},
-    .keys = {{"minimum", "Smallest distance [m].", R"("type": "number", "examples": [0.1])"},
-             {"maximum", "Largest distance [m]. It must be above the minimum.",
-              R"("type": "number", "examples": [0.5])"},
-             {"stiffness", "Stiffness k [N/m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [1e5])", true},
-             {"damping", "Damping d [s/m].",
-              R"("type": "number", "minimum": 0, "default": 0, "examples": [0.5])"}},
-    .example = R"("body_i": "ground", "body_j": "load", "maximum": 0.5, "stiffness": 1e5, "damping": 0.5)"};
+    .examples = {
+        R"("body_i": "ground", "body_j": "load", "maximum": 0.5, "stiffness": 1e5, "damping": 0.5)"}};
 
 const bool distance_registered = io::Registry<ForceType>::add(
     {.name = "distance-limit",
@@ -127,7 +126,12 @@ const bool distance_registered = io::Registry<ForceType>::add(
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);
-         return std::make_unique<DistanceLimit>(i, s.i, j, s.j, read_stop(o));
+         return std::make_unique<DistanceLimit>(
+             i, s.i, j, s.j,
+             read_stop(o, {.minimum = {"Smallest distance [m].", "0.1"},
+                           .maximum = {"Largest distance [m]. It must be above the minimum.", "0.5"},
+                           .stiffness = {"Stiffness k [N/m].", "1e5"},
+                           .damping = {"Damping d [s/m].", "0.5"}}));
      }});
 
 const TypeSchema angle_schema = {
@@ -136,16 +140,8 @@ const TypeSchema angle_schema = {
         "the start. Beyond a limit, by delta, the torque k delta max(0, 1 + d deltadot) turns the bodies "
         "back; within the limits there is no torque. The angle is counted through whole turns. One step "
         "must rotate the bodies by less than three eighths of a turn. At least one limit must be given.",
-    .parts = {"axes"},
-    .keys = {{"minimum", "Smallest angle [rad].", R"("type": "number", "examples": [-0.5])"},
-             {"maximum", "Largest angle [rad]. It must be above the minimum.",
-              R"("type": "number", "examples": [0.5])"},
-             {"stiffness", "Stiffness k [N m/rad].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [1e3])", true},
-             {"damping", "Damping d [s/rad].",
-              R"("type": "number", "minimum": 0, "default": 0, "examples": [0.1])"}},
-    .example = R"("body_i": "ground", "body_j": "door", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1], )"
-               R"("maximum": 1.5, "stiffness": 1e3)"};
+    .examples = {R"("body_i": "ground", "body_j": "door", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1], )"
+                 R"("maximum": 1.5, "stiffness": 1e3)"}};
 
 const bool angle_registered = io::Registry<ForceType>::add(
     {.name = "angle-limit",
@@ -153,7 +149,13 @@ const bool angle_registered = io::Registry<ForceType>::add(
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State& x) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Axes axis(o);
-         return std::make_unique<AngleLimit>(i, axis.i, j, axis.j, read_stop(o), x);
+         return std::make_unique<AngleLimit>(
+             i, axis.i, j, axis.j,
+             read_stop(o, {.minimum = {"Smallest angle [rad].", "-0.5"},
+                           .maximum = {"Largest angle [rad]. It must be above the minimum.", "0.5"},
+                           .stiffness = {"Stiffness k [N m/rad].", "1e3"},
+                           .damping = {"Damping d [s/rad].", "0.1"}}),
+             x);
      }});
 
 }  // namespace

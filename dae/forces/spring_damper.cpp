@@ -59,19 +59,8 @@ const TypeSchema schema_spring_damper = {
         "Spring, damper and actuator between points P and Q. The force k (l - l_0) + c ldot + F acts "
         "along the line from P to Q; l is the distance of the points. A positive force pulls the "
         "bodies together. The run stops with an error if the points coincide.",
-    .parts = {"points", "implicit_spring"},
-    .keys = {{"stiffness", "Stiffness k [N/m].", R"("type": "number", "minimum": 0, "examples": [1000])",
-              true},
-             {"damping", "Damping coefficient c [N s/m].",
-              R"("type": "number", "minimum": 0, "default": 0, "examples": [10])"},
-             {"free_length", "Free length l_0 [m].", R"("type": "number", "minimum": 0, "examples": [0.3])",
-              true},
-             {"force",
-              "Additional force F [N]: a number or an expression in the variables l (m), ldot (m/s) "
-              "and t (s). Without it F is zero.",
-              R"("$ref": "#/$defs/formula", "examples": ["-5*ldot^3"])"}},
-    .example = R"("body_i": "ground", "body_j": "slider", "stiffness": 1000, )"
-               R"("damping": 10, "free_length": 0.3)"};
+    .examples = {R"("body_i": "ground", "body_j": "slider", "stiffness": 1000, )"
+                 R"("damping": 10, "free_length": 0.3)"}};
 
 const bool registered_spring_damper = io::Registry<ForceType>::add(
     {.name = "spring-damper",
@@ -79,11 +68,18 @@ const bool registered_spring_damper = io::Registry<ForceType>::add(
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
          const auto [i, j] = bodies.pair(o);
          const Points s(o);
-         const double k = o.not_negative("stiffness"), c = o.not_negative("damping", 0);
-         SpringDamper spring(i, s.i, j, s.j, k, c, o.not_negative("free_length"));
-         if (o.find("force") != nullptr) {
+         const double k = o.not_negative("stiffness", {"Stiffness k [N/m].", "1000"}),
+                      c = o.not_negative("damping", {"Damping coefficient c [N s/m].", "10"}, 0);
+         SpringDamper spring(i, s.i, j, s.j, k, c,
+                             o.not_negative("free_length", {"Free length l_0 [m].", "0.3"}));
+         if (o.given("force")) {
              const std::vector<std::string> variables = {"l", "ldot", "t"};
-             const std::string law = o.formula("force", {}, variables);
+             const std::string law =
+                 o.formula("force",
+                           {"Additional force F [N]: a number or an expression in the variables l (m), ldot "
+                            "(m/s) and t (s). Without it F is zero.",
+                            R"("-5*ldot^3")"},
+                           {}, variables);
              try {
                  spring.law.emplace(law, variables);
              } catch (const io::ExpressionError& e) {

@@ -22,9 +22,8 @@ const TypeSchema schema_cylindrical = {
     .description =
         "Cylindrical joint, 4 rows: the axis through P and the axis through Q are collinear. Body j "
         "can slide along the common axis and rotate about it.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [1, 0, 0])"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [1, 0, 0])"}};
 
 const bool registered_cylindrical = io::Registry<ConstraintType>::add(
     {.name = "cylindrical",

@@ -24,17 +24,14 @@ const TypeSchema schema_distance = {
     .description =
         "Distance joint, one row: points P and Q stay at a constant distance. It models a rigid link "
         "without mass.",
-    .parts = {"points"},
-    .keys = {{"length", "Distance of P and Q [m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [0.5])", true}},
-    .example = R"("body_i": "crank", "body_j": "rod", "length": 0.5)"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "length": 0.5)"}};
 
 const bool registered_distance = io::Registry<ConstraintType>::add(
     {.name = "distance",
      .schema = schema_distance,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
          const Points s(o);
-         return distance(i, s.i, j, s.j, o.positive("length"));
+         return distance(i, s.i, j, s.j, o.positive("length", {"Distance of P and Q [m].", "0.5"}));
      }});
 
 }  // namespace

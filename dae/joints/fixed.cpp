@@ -22,7 +22,7 @@ namespace {
 
 const TypeSchema schema_fixed = {
     .description = "Fixed joint, 6 rows: the relative position and orientation keep their initial values.",
-    .example = R"("body_i": "crank", "body_j": "rod")"};
+    .examples = {R"("body_i": "crank", "body_j": "rod")"}};
 
 const bool registered_fixed = io::Registry<ConstraintType>::add(
     {.name = "fixed",

@@ -115,15 +115,8 @@ const TypeSchema schema_gear = {
         "to the ground or to a carrier for the bearings; the line of centres may rotate, as in a "
         "planetary gear train. The angles are counted through whole turns. One step must rotate each "
         "gear by less than half a turn relative to the line of centres.",
-    .parts = {"points", "axes"},
-    .keys = {{"radius_i", "Pitch radius of the gear of body i [m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
-             {"radius_j", "Pitch radius of the gear of body j [m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [0.2])", true},
-             {"internal", "Whether body j is an internal gear (ring) around the gear of body i.",
-              R"("type": "boolean", "default": false, "examples": [true])"}},
-    .example = R"("body_i": "pinion", "body_j": "wheel", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [1, 0, 0], "radius_i": 0.1, "radius_j": 0.2)"};
+    .examples = {R"("body_i": "pinion", "body_j": "wheel", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [1, 0, 0], "radius_i": 0.1, "radius_j": 0.2)"}};
 
 const bool registered_gear = io::Registry<ConstraintType>::add(
     {.name = "gear",
@@ -131,8 +124,15 @@ const bool registered_gear = io::Registry<ConstraintType>::add(
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);
-         const double R_i = o.positive("radius_i"), R_j = o.positive("radius_j");
-         return gear(i, s.i, axis.i, R_i, j, s.j, axis.j, o.flag("internal", false) ? -R_j : R_j, x);
+         const double R_i = o.positive("radius_i", {"Pitch radius of the gear of body i [m].", "0.1"}),
+                      R_j = o.positive("radius_j", {"Pitch radius of the gear of body j [m].", "0.2"});
+         return gear(
+             i, s.i, axis.i, R_i, j, s.j, axis.j,
+             o.flag("internal",
+                    {"Whether body j is an internal gear (ring) around the gear of body i.", "true"}, false)
+                 ? -R_j
+                 : R_j,
+             x);
      }});
 
 }  // namespace

@@ -37,18 +37,20 @@ const TypeSchema schema_hinge_driver = {
         "relative to its initial orientation. The angle is counted through whole turns. Use it "
         "together with a joint that makes the axes parallel, such as revolute; the axes must be "
         "parallel at the start and point the same way.",
-    .parts = {"axes"},
-    .keys = {{"angle", "Prescribed angle [rad], positive by the right-hand rule about the axis of body i.",
-              R"("$ref": "#/$defs/motion", "examples": ["2*pi*t"])", true}},
-    .example = R"("body_i": "ground", "body_j": "crank", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [1, 0, 0], "angle": "2*pi*t")"};
+    .examples = {R"("body_i": "ground", "body_j": "crank", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [1, 0, 0], "angle": "2*pi*t")"}};
 
 const bool registered_hinge_driver = io::Registry<ConstraintType>::add(
     {.name = "hinge-driver",
      .schema = schema_hinge_driver,
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Axes axis(o);
-         return hinge_driver(i, axis.i, j, axis.j, read_driver(o, "angle"), x);
+         return hinge_driver(
+             i, axis.i, j, axis.j,
+             read_driver(o, "angle",
+                         {"Prescribed angle [rad], positive by the right-hand rule about the axis of body i.",
+                          R"("2*pi*t")"}),
+             x);
      }});
 
 }  // namespace

@@ -22,8 +22,8 @@ const TypeSchema schema_planar = {
     .description =
         "Planar joint, 3 rows: point Q stays in the plane through P that is perpendicular to the axis of "
         "body i, and the axes stay parallel. Body j can slide in the plane and rotate about its normal.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "ground", "body_j": "disk", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1])"};
+    .examples = {
+        R"("body_i": "ground", "body_j": "disk", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1])"}};
 
 const bool registered_planar = io::Registry<ConstraintType>::add(
     {.name = "planar",

@@ -20,10 +20,9 @@ namespace {
 
 const TypeSchema schema_revolute = {
     .description = "Revolute joint, 5 rows: points P and Q coincide and the axes are parallel.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
-               R"("s_bar_q_j": [0, -0.2, 0], "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [1, 0, 0])"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
+                 R"("s_bar_q_j": [0, -0.2, 0], "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [1, 0, 0])"}};
 
 const bool registered_revolute = io::Registry<ConstraintType>::add(
     {.name = "revolute",

@@ -23,9 +23,8 @@ const TypeSchema schema_revolute_cylindrical = {
     .description =
         "Revolute-cylindrical joint, 3 rows: point P slides along the axis of body j, which stays "
         "perpendicular to the axis of body i.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [0, 1, 0])"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [0, 1, 0])"}};
 
 const bool registered_revolute_cylindrical = io::Registry<ConstraintType>::add(
     {.name = "revolute-cylindrical",

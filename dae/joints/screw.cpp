@@ -65,11 +65,8 @@ const TypeSchema screw_schema = {
         "Screw joint, 5 rows: the axis through P and the axis through Q are collinear, and body j moves "
         "along the axis by the pitch for each turn relative to body i. The angle is counted through "
         "whole turns. One step must turn the screw by less than half a turn.",
-    .parts = {"points", "axes"},
-    .keys = {{"pitch", "Displacement for one turn [m], positive for a right-handed screw.",
-              R"("type": "number", "examples": [0.01])", true}},
-    .example = R"("body_i": "ground", "body_j": "nut", "axis_bar_i": [0, 0, 1], )"
-               R"("axis_bar_j": [0, 0, 1], "pitch": 0.01)"};
+    .examples = {R"("body_i": "ground", "body_j": "nut", "axis_bar_i": [0, 0, 1], )"
+                 R"("axis_bar_j": [0, 0, 1], "pitch": 0.01)"}};
 
 const bool screw_registered = io::Registry<ConstraintType>::add(
     {.name = "screw",
@@ -77,7 +74,10 @@ const bool screw_registered = io::Registry<ConstraintType>::add(
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);
-         return screw(i, s.i, axis.i, j, s.j, axis.j, o.number("pitch"), x);
+         return screw(
+             i, s.i, axis.i, j, s.j, axis.j,
+             o.number("pitch", {"Displacement for one turn [m], positive for a right-handed screw.", "0.01"}),
+             x);
      }});
 
 const TypeSchema rack_schema = {
@@ -86,14 +86,8 @@ const TypeSchema rack_schema = {
         "A rotation of the pinion relative to the rack, positive about the axis, moves Q along "
         "direction_bar_i by the radius times the angle. Add joints that guide rack and pinion. The angle "
         "is counted through whole turns. One step must rotate the pinion by less than half a turn.",
-    .parts = {"points", "axes"},
-    .keys = {{"direction_bar_i",
-              "Direction of the rack [-], in the frame of body i, perpendicular to the axis.",
-              R"("$ref": "#/$defs/direction", "examples": [[0, 1, 0]])", true},
-             {"radius", "Pitch radius of the pinion [m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [0.05])", true}},
-    .example = R"("body_i": "rack", "body_j": "pinion", "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0], )"
-               R"("direction_bar_i": [0, 1, 0], "radius": 0.05)"};
+    .examples = {R"("body_i": "rack", "body_j": "pinion", "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0], )"
+                 R"("direction_bar_i": [0, 1, 0], "radius": 0.05)"}};
 
 const bool rack_registered = io::Registry<ConstraintType>::add(
     {.name = "rack-and-pinion",
@@ -101,8 +95,11 @@ const bool rack_registered = io::Registry<ConstraintType>::add(
      .read = [](ObjectReader& o, int i, int j, const State& x) -> ConstraintType::Constraints {
          const Points s(o);
          const Axes axis(o);
-         const Vec3 direction = o.direction("direction_bar_i");
-         return rack_and_pinion(i, s.i, direction, axis.i, j, s.j, axis.j, o.positive("radius"), x);
+         const Vec3 direction = o.direction(
+             "direction_bar_i",
+             {"Direction of the rack [-], in the frame of body i, perpendicular to the axis.", "[0, 1, 0]"});
+         return rack_and_pinion(i, s.i, direction, axis.i, j, s.j, axis.j,
+                                o.positive("radius", {"Pitch radius of the pinion [m].", "0.05"}), x);
      }});
 
 }  // namespace

@@ -16,11 +16,10 @@ Blocks spherical(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j)
 
 namespace {
 
-const TypeSchema schema_spherical = {.description = "Spherical joint, 3 rows: points P and Q coincide.",
-                                     .parts = {"points"},
-                                     .example =
-                                         R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
-                                         R"("s_bar_q_j": [0, -0.2, 0])"};
+const TypeSchema schema_spherical = {
+    .description = "Spherical joint, 3 rows: points P and Q coincide.",
+    .examples = {R"("body_i": "crank", "body_j": "rod", "s_bar_p_i": [0, 0.1, 0], )"
+                 R"("s_bar_q_j": [0, -0.2, 0])"}};
 
 const bool registered_spherical = io::Registry<ConstraintType>::add(
     {.name = "spherical",

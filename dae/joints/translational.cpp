@@ -23,9 +23,8 @@ const TypeSchema schema_translational = {
     .description =
         "Translational (prismatic) joint, 5 rows: the axis through P and the axis through Q are "
         "collinear, and the relative orientation keeps its initial value.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "ground", "body_j": "slider", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [1, 0, 0])"};
+    .examples = {R"("body_i": "ground", "body_j": "slider", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [1, 0, 0])"}};
 
 const bool registered_translational = io::Registry<ConstraintType>::add(
     {.name = "translational",

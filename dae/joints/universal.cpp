@@ -22,9 +22,8 @@ namespace {
 const TypeSchema schema_universal = {
     .description =
         "Universal (Cardan) joint, 4 rows: points P and Q coincide and the axes stay perpendicular.",
-    .parts = {"points", "axes"},
-    .example = R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
-               R"("axis_bar_j": [0, 1, 0])"};
+    .examples = {R"("body_i": "crank", "body_j": "rod", "axis_bar_i": [1, 0, 0], )"
+                 R"("axis_bar_j": [0, 1, 0])"}};
 
 const bool registered_universal = io::Registry<ConstraintType>::add(
     {.name = "universal",

@@ -63,10 +63,8 @@ const TypeSchema schema_angle = {
     .description =
         "Joint angle: rotation [rad] of body j relative to body i about a common axis since the start, "
         "counted through whole turns, and its rate [rad/s]: the columns NAME.angle and NAME.rate.",
-    .parts = {"axes"},
-    .keys = {},
-    .example = R"("name": "crank angle", "body_i": "ground", "body_j": "crank", "axis_bar_i": [0, 0, 1], )"
-               R"("axis_bar_j": [0, 0, 1])"};
+    .examples = {R"("name": "crank angle", "body_i": "ground", "body_j": "crank", "axis_bar_i": [0, 0, 1], )"
+                 R"("axis_bar_j": [0, 0, 1])"}};
 
 const bool registered_angle = io::Registry<OutputType>::add(
     {.name = "angle",

@@ -9,25 +9,19 @@ namespace {
 const TypeSchema schema_expression = {
     .description =
         "A formula in t, the parameters of the model and the columns of the run: those of trajectory.csv "
-        "(BODY.rx, energy), forces.csv "
-        "(SPRING.force), contacts.csv (CONTACT.F_N) and of the preceding outputs. A column whose name has "
-        "other "
-        "characters than letters, digits, _ and . is written in braces: {ball-floor.F_N}. The column has the "
-        "name of "
-        "the output.",
-    .parts = {"named"},
-    .keys = {{"value", "The formula. Operators and functions as in other formulas.",
-              R"("type": "string", "minLength": 1, "maxLength": 4096, "examples": ["2*bar.vx^2"])", true},
-             {"unit", "Unit, for the documentation of the column.",
-              R"("type": "string", "default": "", "examples": ["J"])"}},
-    .example = R"("name": "height", "value": "bar.rz + 0.5")"};
+        "(BODY.rx, energy), forces.csv (SPRING.force), contacts.csv (CONTACT.F_N) and of the preceding "
+        "outputs. A column whose name has other characters than letters, digits, _ and . is written in "
+        "braces: {ball-floor.F_N}. The column has the name of the output.",
+    .examples = {R"("name": "height", "value": "bar.rz + 0.5")"}};
 
 const bool registered_expression = io::Registry<OutputType>::add(
     {.name = "expression",
      .schema = schema_expression,
      .read = [](ObjectReader& o, const BodyFinder&, const State&, const std::vector<std::string>& columns) {
-         std::string value = o.formula_of_names("value", columns);
-         std::string unit = o.text("unit", "");
+         std::string value = o.formula_of_names(
+             "value", columns,
+             {"The formula. Operators and functions as in other formulas.", R"("2*bar.vx^2")"});
+         std::string unit = o.text("unit", {"Unit, for the documentation of the column.", R"("J")"}, "");
          auto output = std::make_unique<ExpressionOutput>(std::move(value), std::move(unit));
          output->place = o.place("value");
          return std::unique_ptr<Output>(std::move(output));

@@ -38,9 +38,7 @@ const TypeSchema schema_length = {
     .description =
         "Distance [m] of points P and Q of two bodies and its rate [m/s]: the columns "
         "NAME.length and NAME.rate.",
-    .parts = {"points"},
-    .keys = {},
-    .example = R"("name": "stroke", "body_i": "ground", "body_j": "slider")"};
+    .examples = {R"("name": "stroke", "body_i": "ground", "body_j": "slider")"}};
 
 const bool registered_length = io::Registry<OutputType>::add(
     {.name = "length",

@@ -57,22 +57,19 @@ const TypeSchema schema_point = {
     .description =
         "Position [m], velocity [m/s] and acceleration [m/s^2] of a point of a body: the columns NAME.x, "
         "y, z, vx, vy, vz, ax, ay, az.",
-    .parts = {"named"},
-    .keys =
-        {{"body", "", R"("$ref": "#/$defs/reference", "description": "The body.")", true},
-         {"point_bar", "",
-          R"("$ref": "#/$defs/vector", "description": "The point in the body frame [m].", "default": [0, 0, 0])"},
-         {"observer", "",
-          R"("$ref": "#/$defs/reference", "description": "The motion is relative to this body and in its frame.", "default": "ground")"}},
-    .example = R"("name": "tip", "body": "bar", "point_bar": [0.5, 0, 0])"};
+    .examples = {R"("name": "tip", "body": "bar", "point_bar": [0.5, 0, 0])"}};
 
 const bool registered_point = io::Registry<OutputType>::add(
     {.name = "point",
      .schema = schema_point,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
-         const int body = bodies.body(o, "body");
-         const Vec3 s_bar = o.vec3("point_bar", Vec3::Zero());
-         const int observer = o.has("observer") ? bodies.body(o, "observer") : ground;
+         const int body = bodies.body(o, "body", {"The body.", R"("bar")"});
+         const Vec3 s_bar = o.vec3("point_bar", {"The point in the body frame [m]."}, Vec3::Zero());
+         const int observer = o.given("observer")
+                                  ? bodies.body(o, "observer",
+                                                {"The motion is relative to this body and in its frame.",
+                                                 R"("ground")", R"("default": "ground")"})
+                                  : ground;
          if (body == observer) o.fail("observer", "body and observer must be different, got one body twice");
          return std::unique_ptr<Output>(std::make_unique<PointOutput>(body, s_bar, observer));
      }});

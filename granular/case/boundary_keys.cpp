@@ -75,7 +75,7 @@ std::vector<NamedBoundary> read_sphere(ObjectReader& o, NamedBoundary sphere)
 {
     Boundary& b = sphere.boundary;
     b.shape = Boundary::Shape::sphere;
-    b.inside = o.flag("inside", false);
+    b.inside = o.flag("inside", {}, false);
     b.radius = o.positive("radius");
     if (b.inside != 0 && o.has("density"))
         o.fail("density", "density needs particles outside of the sphere, got inside true");
@@ -98,7 +98,7 @@ std::vector<NamedBoundary> read_cylinder(ObjectReader& o, NamedBoundary cylinder
     if (o.has("length")) return read_frustum(o, cylinder, b.radius, b.radius);
     refuse_finite_keys(o, "cylinder");
     b.shape = Boundary::Shape::cylinder;
-    b.inside = o.flag("inside", false);
+    b.inside = o.flag("inside", {}, false);
     read_body(o, cylinder);
     return {cylinder};
 }
@@ -114,7 +114,7 @@ std::vector<NamedBoundary> read_cone(ObjectReader& o, NamedBoundary cone)
     refuse_finite_keys(o, "cone");
     b.shape = Boundary::Shape::cone;
     b.cosine = std::cos(half), b.sine = std::sin(half);
-    b.inside = o.flag("inside", false);
+    b.inside = o.flag("inside", {}, false);
     read_body(o, cone);
     return {cone};
 }
@@ -123,7 +123,7 @@ std::vector<NamedBoundary> read_cone(ObjectReader& o, NamedBoundary cone)
 std::vector<NamedBoundary> read_body_of_parts(ObjectReader& o, NamedBoundary body)
 {
     body.boundary.shape = Boundary::Shape::none;
-    body.sums_parts = o.flag("from_parts", false);
+    body.sums_parts = o.flag("from_parts", {}, false);
     if (body.sums_parts)
         for (const char* key : {"r", "mass", "inertia"})
             if (o.has(key))

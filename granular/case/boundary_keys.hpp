@@ -7,7 +7,7 @@
 #include "granular/core/surfaces/triangle_mesh.hpp"
 #include "granular/mesh/solid_body.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <optional>
 

@@ -9,7 +9,7 @@ namespace hilda::granular {
 
 void BoundaryList::read(ObjectReader& o, int material)
 {
-    const std::string name = o.name("name", "boundary " + std::to_string(bounds.size()));
+    const std::string name = o.name("name", {}, "boundary " + std::to_string(bounds.size()));
     if (name.find_first_of(",\"") != std::string::npos)
         o.fail("name", "name must not contain commas and quotes, because it is part of column names, got " +
                            io::described(name));

@@ -26,7 +26,7 @@ namespace {
 Scheme read_scheme(ObjectReader& o)
 {
     const std::vector<std::string> names(std::begin(scheme_names), std::end(scheme_names));
-    const std::string name = o.one_of("integrator", names, names[0]);
+    const std::string name = o.one_of("integrator", names, {}, names[0]);
     return static_cast<Scheme>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
@@ -54,7 +54,7 @@ void read_domain(ObjectReader domain, WorldOptions& o)
         if (o.outflow[side] && o.periodic[side / 2])
             domain.fail("outflow", std::string("outflow must not list a side along a periodic axis, got \"") +
                                        ObjectReader::side_names[side] + '"');
-    o.delete_lost = domain.one_of("lost", {"error", "delete"}, "error") == "delete";
+    o.delete_lost = domain.one_of("lost", {"error", "delete"}, {}, "error") == "delete";
     domain.finish();
 }
 
@@ -69,7 +69,7 @@ public:
         ObjectReader o(out.source, out.source.root, "");
         o.version("hilda_case");
         o.allow_schema();
-        out.name = o.text("name", "case");
+        out.name = o.text("name", {}, "case");
         options(o);
         for (ObjectReader& s : o.objects("stages")) stage(s);
         for (ObjectReader& m : o.objects("materials")) add_material(m);
@@ -127,12 +127,12 @@ private:
                                   key_without_effect +
                                   " has no effect: a checkpoint can be written after every step");
         }
-        world.skin = o.number("skin", world.skin);
+        world.skin = o.number("skin", {}, world.skin);
         if (!(world.skin > 0 && world.skin <= 1))
             o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
-        o.positive("skin", world.skin);  // in single precision
+        o.positive("skin", {}, world.skin);  // in single precision
         world.scheme = read_scheme(o);
-        world.orientation = o.flag("orientation", false);
+        world.orientation = o.flag("orientation", {}, false);
     }
 
     void stage(ObjectReader& o)

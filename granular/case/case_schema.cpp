@@ -6,6 +6,7 @@
 #include "granular/case/pair_keys.hpp"
 #include "granular/case/particles/fill.hpp"
 #include "granular/insertion/sizes.hpp"
+#include "io/schema/schema_recorder.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -11,7 +11,7 @@ namespace hilda::granular {
 int EntryKeys::material(ObjectReader& o) const
 {
     const std::string name =
-        o.text("material", materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
+        o.text("material", {}, materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
     return material_named(name, materials, [&](const std::string& what) { o.fail("material", what); });
 }
 
@@ -36,7 +36,7 @@ int EntryKeys::group(ObjectReader& o)
 std::uint16_t EntryKeys::replica(ObjectReader& o) const
 {
     constexpr long most = 0xffff;
-    const long number = o.count("replica", 0);
+    const long number = o.count("replica", {}, 0);
     if (number > most) o.fail("replica", "replica must be at most 65535, got " + std::to_string(number));
     if (number > 0 && !free.empty())
         o.fail("replica", "replica must be 0 if a boundary has a mass, as " + free + " has, got " +

@@ -60,7 +60,7 @@ std::vector<NamedBoundary> read_disk(ObjectReader& o, NamedBoundary disk)
     b.shape = Boundary::Shape::disk;
     b.axis = o.direction("normal");
     b.radius = o.positive("radius");
-    b.flags = o.flag("two_sided", false) ? two_sided_surface : 0;
+    b.flags = o.flag("two_sided", {}, false) ? two_sided_surface : 0;
     read_body(o, disk);
     return {disk};
 }
@@ -75,7 +75,7 @@ std::vector<NamedBoundary> read_torus(ObjectReader& o, NamedBoundary torus)
     if (!(b.second_radius > b.radius))
         o.fail("ring_radius", "ring_radius must be above radius, " + io::shortest(b.radius) + ", got " +
                                   io::shortest(b.second_radius));
-    b.inside = o.flag("inside", false);
+    b.inside = o.flag("inside", {}, false);
     if (b.inside != 0 && o.has("density"))
         o.fail("density", "density needs particles outside of the torus, got inside true");
     read_body(o, torus, read_density(o, solid_torus(1, b.axis, b.radius, b.second_radius)));
@@ -92,9 +92,9 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary of, doubl
     const Boundary shape = frustum(b.r, b.axis, length, radius, second_radius);
     b.shape = shape.shape, b.radius = radius, b.second_radius = second_radius;
     b.from = 0, b.to = length, b.cosine = shape.cosine, b.sine = shape.sine;
-    b.inside = o.flag("inside", false);
+    b.inside = o.flag("inside", {}, false);
     const std::array<bool, 2> open = read_open_ends(o);
-    const bool two_sided = o.flag("two_sided", false);
+    const bool two_sided = o.flag("two_sided", {}, false);
     if (two_sided && (b.inside != 0 || !(open[0] && open[1])))
         o.fail("two_sided", "two_sided needs both ends in open, and not inside, got true");
     b.flags = (two_sided ? two_sided_surface : 0) | (open[0] ? open_first_end : 0) |
@@ -108,7 +108,7 @@ std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary of, doubl
     read_body(o, of, dense);
     const double middle = solid.centre.dot(b.axis);
     if (b.mass > 0)
-        set_frustum_centre(of, o.number("centre", middle));
+        set_frustum_centre(of, o.number("centre", {}, middle));
     else if (of.solid)
         set_frustum_centre(of, middle);
     std::vector<NamedBoundary> all = {of};

@@ -34,7 +34,7 @@ std::vector<std::array<double, 2>> points(ObjectReader& o, std::string_view key,
 /// An integer of at most 31 bits
 int number(ObjectReader& o, std::string_view key, long fallback)
 {
-    const long n = o.count(key, fallback);
+    const long n = o.count(key, {}, fallback);
     if (n > std::numeric_limits<int>::max())
         o.fail(key, std::string(key) + " must be at most 2147483647, got " + std::to_string(n));
     return static_cast<int>(n);
@@ -44,8 +44,8 @@ TriangleMesh read_box_mesh(ObjectReader& o)
 {
     const Vec3 low = o.vec3("low"), high = o.vec3("high");
     const std::array<bool, 6> open = o.sides("open");
-    const bool inside = o.flag("inside", true);
-    return box_mesh(low, high, open, inside, o.not_negative("edge", 0));
+    const bool inside = o.flag("inside", {}, true);
+    return box_mesh(low, high, open, inside, o.not_negative("edge", {}, 0));
 }
 TriangleMesh read_lathe(ObjectReader& o)
 {
@@ -60,7 +60,7 @@ TriangleMesh read_extrusion(ObjectReader& o)
 TriangleMesh read_plate(ObjectReader& o)
 {
     const double x = o.positive("width_x"), y = o.positive("width_y");
-    return plate_mesh(x, y, o.not_negative("edge", 0));
+    return plate_mesh(x, y, o.not_negative("edge", {}, 0));
 }
 TriangleMesh read_sphere_mesh(ObjectReader& o)
 {
@@ -97,7 +97,7 @@ TriangleMesh read_triangles(ObjectReader& o)
         return mesh;
     }
     const std::string file = o.file("file");
-    const double scale = o.positive("scale", 1);
+    const double scale = o.positive("scale", {}, 1);
     try {
         TriangleMesh mesh = read_mesh(file);
         for (Vec3& v : mesh.vertex) v = scale * v;
@@ -133,7 +133,7 @@ std::vector<NamedBoundary> read_mesh(ObjectReader& o, NamedBoundary b)
 {
     b.boundary.shape = Boundary::Shape::mesh;
     b.mesh = read_triangles(o);
-    b.two_sided = o.flag("two_sided", false);
+    b.two_sided = o.flag("two_sided", {}, false);
     b.boundary.p = turned({1, {0, 0, 0}}, o.vec3("rotation", Vec3{0, 0, 0}));
     o.located([&] { check_mesh(*b.mesh, b.name); });
     std::optional<SolidBody> solid;

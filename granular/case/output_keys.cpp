@@ -61,9 +61,9 @@ FieldGrid read_grid(ObjectReader& o, const WorldOptions& world)
         grid.period[axis] = to[axis] - from[axis];
     }
     read_cells(o, grid);
-    const std::string values = o.one_of("values", {"averages", "points"}, "averages");
+    const std::string values = o.one_of("values", {"averages", "points"}, {}, "averages");
     grid.values = values == "points" ? FieldGrid::Values::points : FieldGrid::Values::averages;
-    grid.closed = o.one_of("edges", {"open", "closed"}, "open") == "closed";
+    grid.closed = o.one_of("edges", {"open", "closed"}, {}, "open") == "closed";
     if (grid.closed && values == "points")
         o.fail("edges", "edges must be open with the values \"points\", got \"closed\"");
     return grid;
@@ -72,7 +72,7 @@ FieldGrid read_grid(ObjectReader& o, const WorldOptions& world)
 Kernel read_kernel(ObjectReader& o, const FieldGrid& grid)
 {
     const std::vector<std::string> names(Kernel::names.begin(), Kernel::names.end());
-    const std::string name = o.one_of("kernel", names, names[0]);
+    const std::string name = o.one_of("kernel", names, {}, names[0]);
     Kernel kernel;
     kernel.type = static_cast<Kernel::Type>(std::find(names.begin(), names.end(), name) - names.begin());
     kernel.width = o.positive("width");
@@ -100,7 +100,7 @@ long most_samples(long samples, double interval, double h)
 /// Number of samples of an interval [s] with steps of size h: at least 1 and at most one in each step
 long read_samples(ObjectReader& o, std::optional<long> fallback, double interval, double h)
 {
-    const long samples = o.count("samples", fallback);
+    const long samples = o.count("samples", {}, fallback);
     const long most = most_samples(samples, interval, h);
     if (samples < 1 || samples > most)
         o.fail("samples", "samples must be from 1 to the number of steps of the interval, " +
@@ -111,7 +111,7 @@ long read_samples(ObjectReader& o, std::optional<long> fallback, double interval
 FieldSpec read_field(ObjectReader& o, const WorldOptions& world, const std::string& number)
 {
     FieldSpec spec;
-    spec.name = o.name("name", number);
+    spec.name = o.name("name", {}, number);
     if (!is_file_name(spec.name))
         o.fail("name",
                "name must consist of letters, digits, - and _, because it is part of file names, got " +
@@ -120,7 +120,7 @@ FieldSpec read_field(ObjectReader& o, const WorldOptions& world, const std::stri
     spec.kernel = read_kernel(o, spec.grid);
     spec.interval = o.positive("interval");
     spec.samples = read_samples(o, 1, spec.interval, world.h);
-    const long replica = o.count("replica", 0);
+    const long replica = o.count("replica", {}, 0);
     if (replica > 0xffff) o.fail("replica", "replica must be at most 65535, got " + std::to_string(replica));
     spec.replica = static_cast<int>(replica);
     if (o.has("group")) spec.group = o.name("group");
@@ -150,7 +150,7 @@ ContactSpec read_contacts(ObjectReader o)
             if (!(spec.times[k] >= 0))
                 o.fail("times", k, "times must not be negative, got " + io::shortest(spec.times[k]));
     }
-    spec.network = o.flag("network", false);
+    spec.network = o.flag("network", {}, false);
     if (!spec.has_lists() && !spec.network)
         o.fail("contacts must have interval, times, or network with the value true, got none of them");
     o.finish();

@@ -21,7 +21,7 @@ public:
     float positive(const char* key, const char*, double) { return static_cast<float>(own.positive(key)); }
     float not_negative(const char* key, double default_value, const char*, double)
     {
-        return static_cast<float>(own.not_negative(key, default_value));
+        return static_cast<float>(own.not_negative(key, {}, default_value));
     }
     /// 0 if the key is absent. `other` is the name of the key with the value `least`.
     float at_least(const char* key, float least, const char* other, const char*, double)
@@ -33,7 +33,7 @@ public:
                               io::shortest(static_cast<double>(least)) + ", got " + io::shortest(x));
         return static_cast<float>(x);
     }
-    int flag(const char* key, const char*) { return own.flag(key, false) ? 1 : 0; }
+    int flag(const char* key, const char*) { return own.flag(key, {}, false) ? 1 : 0; }
     double restitution()
     {
         constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
@@ -115,14 +115,14 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
     for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
     PairLaw law;
-    if (pair.one_of("lever", {"radius", "contact"}, "radius") == "contact") law.lever = Lever::contact;
+    if (pair.one_of("lever", {"radius", "contact"}, {}, "radius") == "contact") law.lever = Lever::contact;
     for_each_kind([&]<class Laws>(const char* kind, const char* standard, Laws PairLaw::*member) {
         static const io::JsonSource none("{}", "");
         ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");
         std::vector<std::string> names;
         Laws::for_each([&](const auto& known) { names.emplace_back(known.name); });
         LawKeys keys(own, pair, i, j, law);
-        (law.*member).read(own.one_of("law", names, standard), keys);
+        (law.*member).read(own.one_of("law", names, {}, standard), keys);
         own.finish();
     });
     check_stiffness(pair, i, j, law);
@@ -135,7 +135,7 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
             "the tangential law must not be none with this rolling or spin law, whose stiffness is that of "
             "the tangential law");
     // Checked even if no law reads them.
-    const double mu = pair.not_negative("mu", 0), mu_s = pair.not_negative("mu_s", mu);
+    const double mu = pair.not_negative("mu", {}, 0), mu_s = pair.not_negative("mu_s", {}, mu);
     if (mu_s < mu)
         pair.fail("mu_s",
                   "mu_s must not be less than mu, " + io::shortest(mu) + ", got " + io::shortest(mu_s));

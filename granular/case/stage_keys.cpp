@@ -12,9 +12,9 @@ RestCondition read_condition(ObjectReader o, double h)
     if (o.has("kinetic_energy")) c.kinetic_energy = o.positive("kinetic_energy");
     if (o.has("share")) c.share = o.fraction("share");
     if (!c.kinetic_energy && !c.share) o.fail("one of the keys kinetic_energy and share is required");
-    c.from = o.not_negative("from", 0);
+    c.from = o.not_negative("from", {}, 0);
     constexpr double default_steps = 100;
-    c.interval = o.positive("interval", default_steps * h);
+    c.interval = o.positive("interval", {}, default_steps * h);
     o.finish();
     return c;
 }
@@ -48,7 +48,7 @@ StageSpec read_stage(ObjectReader& o, double h)
     const bool has_limit = s.duration || s.end;
     if (o.has("on_timeout") && !(s.until && has_limit))
         o.fail("on_timeout", "on_timeout is only for a stage with until and a duration or end");
-    s.fails = o.one_of("on_timeout", {"warn", "fail"}, "warn") == "fail";
+    s.fails = o.one_of("on_timeout", {"warn", "fail"}, {}, "warn") == "fail";
     if (const io::Json* set = o.find("set"); set != nullptr) {
         if (set->members() == nullptr)
             o.fail("set", "set must be an object of JSON pointers and values, got " + io::described(*set));

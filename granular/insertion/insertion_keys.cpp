@@ -38,7 +38,7 @@ InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h,
                              const World& world)
 {
     InsertionSpec s;
-    s.name = o.name("name", name);
+    s.name = o.name("name", {}, name);
     s.clumps = read_placed_clumps(o, world);
     s.sizes = read_radius(o, s.clumps ? std::optional(s.clumps.radius) : std::nullopt);
     if (s.clumps) {
@@ -48,25 +48,25 @@ InsertionSpec read_insertion(ObjectReader& o, const std::string& name, double h,
     const double R = s.sizes.largest();
     s.region = read_region(o.object("region"), R);
     read_amount(o, s);
-    s.from = o.not_negative("from", 0);
+    s.from = o.not_negative("from", {}, 0);
     if (o.has("to")) s.flow.to = o.number("to");
     if (o.has("to") && s.flow.rate == 0 && s.flow.mass_rate == 0)
         o.fail("to", "to must be given together with rate or mass_rate only");
     if (!(s.flow.to > s.from))
         o.fail("to", "to must be after from, " + io::shortest(s.from) + ", got " + io::shortest(s.flow.to));
     s.flow.v = o.vec3("v", Vec3{0, 0, 0});
-    s.flow.random_v = o.not_negative("random_v", 0);
+    s.flow.random_v = o.not_negative("random_v", {}, 0);
     const double speed = s.flow.v.norm(), g = gravity.norm();
     std::optional<double> interval;
     if (speed + g > 0) interval = time_to_move(2 * R, speed, g);
     s.first_step = steps_in(o, "from", s.from, h, 0);
-    s.interval = steps_in(o, "interval", o.positive("interval", interval), h, 1);
-    s.postpones = o.one_of("on_overlap", {"postpone", "refuse"}, "postpone") == "postpone";
-    s.most_tries = o.count("tries", s.most_tries);
+    s.interval = steps_in(o, "interval", o.positive("interval", {}, interval), h, 1);
+    s.postpones = o.one_of("on_overlap", {"postpone", "refuse"}, {}, "postpone") == "postpone";
+    s.most_tries = o.count("tries", {}, s.most_tries);
     if (s.most_tries < InsertionSpec::tries_at_once)
         o.fail("tries", "tries must be at least 200, got " + std::to_string(s.most_tries));
-    s.flow.active = o.flag("active", true);
-    s.seed = static_cast<std::uint64_t>(o.count("seed", 1));
+    s.flow.active = o.flag("active", {}, true);
+    s.seed = static_cast<std::uint64_t>(o.count("seed", {}, 1));
     return s;
 }
 

@@ -62,7 +62,7 @@ double Sizes::mean_cube() const
 Sizes read_sizes(ObjectReader o)
 {
     const SizeType& type = *io::Registry<SizeType>::find(o.one_of("type", io::Registry<SizeType>::names()));
-    const bool by_mass = o.one_of("by", {"number", "mass"}, "number") == "mass";
+    const bool by_mass = o.one_of("by", {"number", "mass"}, {}, "number") == "mass";
     const std::vector<Sizes::Piece> pieces = type.read(o);
     o.finish();
     return {pieces, by_mass ? Share::of_mass : Share::of_number};
@@ -75,9 +75,9 @@ Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback)
             if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with sizes");
         return read_sizes(o.object("sizes"));
     }
-    const double radius = o.positive("radius", fallback), least = o.number("least_radius", radius);
+    const double radius = o.positive("radius", {}, fallback), least = o.number("least_radius", {}, radius);
     if (least > 0 && least <= radius)
-        o.positive("least_radius", radius);  // in single precision
+        o.positive("least_radius", {}, radius);  // in single precision
     else
         o.fail("least_radius",
                "least_radius must be positive and not greater than radius, got " + io::shortest(least));
@@ -87,7 +87,8 @@ Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback)
 std::pair<double, double> read_limits(ObjectReader& o, const std::optional<double>& least,
                                       const std::optional<double>& largest)
 {
-    const double low = o.positive("least_radius", least), high = o.positive("largest_radius", largest);
+    const double low = o.positive("least_radius", {}, least),
+                 high = o.positive("largest_radius", {}, largest);
     if (!(low <= high))
         o.fail(o.has("least_radius") ? "least_radius" : "largest_radius",
                "least_radius must not be above largest_radius, " + io::shortest(high) + ", got " +

@@ -5,7 +5,7 @@
 
 #include "granular/backend/split_mix.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <vector>
 

@@ -43,7 +43,7 @@ std::array<double, 4> read_orientation(ObjectReader& o)
 
 ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, const Material& properties)
 {
-    const std::string name = o.name("name", "clump " + std::to_string(world.clump_templates().size()));
+    const std::string name = o.name("name", {}, "clump " + std::to_string(world.clump_templates().size()));
     for (const ClumpTemplate& other : world.clump_templates())
         if (other.name == name) o.fail("name", "two clumps have the same name, got " + io::described(name));
     std::vector<Sphere> spheres;
@@ -56,7 +56,7 @@ ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, cons
     if (!o.has("mass")) {
         for (const char* key : {"inertia", "centre"})
             if (o.has(key)) o.fail(key, std::string(key) + " needs mass, got none");
-        const double density = o.positive("density", properties.density);
+        const double density = o.positive("density", {}, properties.density);
         return o.located([&] { return solid_clump(name, spheres, density, material); });
     }
     ClumpTemplate t = o.located([&] { return solid_clump(name, spheres, 1, material); });
@@ -75,7 +75,7 @@ Clump read_single_clump(ObjectReader& o, const World& world, std::uint16_t repli
             .r = o.vec3("r"),
             .v = o.vec3("v", Vec3{0, 0, 0}),
             .omega = o.vec3("omega", Vec3{0, 0, 0}),
-            .scale = o.positive("scale", 1),
+            .scale = o.positive("scale", {}, 1),
             .replica = replica};
     if (o.has("orientation")) c.e = read_orientation(o);
     return c;

@@ -25,7 +25,8 @@ thread_local Objects current;
 
 std::shared_ptr<const contact::Surface> read_surface(dae::ObjectReader& o)
 {
-    const double number = o.number("number");
+    const double number =
+        o.number("number", {"Number of the object [-].", "0", R"("type": "integer", "minimum": 0)"});
     if (current.all == nullptr || !(number >= 0 && number < static_cast<double>(current.all->size())))
         o.fail("number", "there is no surface with this number; give the object to Model.contact()");
     auto surface = std::make_shared<PythonSurface>((*current.all)[static_cast<size_t>(number)]);
@@ -36,11 +37,9 @@ std::shared_ptr<const contact::Surface> read_surface(dae::ObjectReader& o)
 const bool registered = io::Registry<contact::SurfaceType>::add(
     {.name = "python",
      .schema = {.description = "Object of a Python class derived from hilda.Surface.",
-                .parts = {"pose"},
-                .keys = {{"number", "Number of the object.",
-                          R"("type": "integer", "minimum": 0, "examples": [0])", true}},
-                .example = R"("number": 0)"},
-     .read = read_surface});
+                .examples = {R"("number": 0)"}},
+     .read = read_surface,
+     .format_only = true});
 
 }  // namespace
 

@@ -17,7 +17,7 @@ CosimPair read_pair(const io::JsonSource& source, const io::Json& value, const s
 {
     io::ObjectReader o(source, value, pointer);
     CosimPair pair{.body = o.name("body"), .boundary = {}, .place = o.place()};
-    pair.boundary = o.name("boundary", pair.body);
+    pair.boundary = o.name("boundary", {}, pair.body);
     if (o.has("r")) {
         const std::vector<double> r = o.numbers("r", 3);
         pair.r = {r[0], r[1], r[2]};
@@ -37,14 +37,14 @@ CosimFile read_cosim(const std::string& path, const std::vector<std::string>& se
     io::ObjectReader o(f.source, f.source.root, "");
     o.version("hilda_cosim");
     o.allow_schema();
-    f.name = o.name("name", std::filesystem::path(path).stem().string());
+    f.name = o.name("name", {}, std::filesystem::path(path).stem().string());
     f.model = o.file("model");
     f.granular_case = o.file("case");
-    f.substeps = o.count("substeps", 1);
+    f.substeps = o.count("substeps", {}, 1);
     if (f.substeps < 1) o.fail("substeps", "substeps must be positive, got 0");
     f.end = o.positive("end");
     if (o.has("interval")) f.interval = o.positive("interval");
-    f.integrator = o.one_of("integrator", {"rA-half-1-momentum", "rA-half-1-kick"}, default_integrator);
+    f.integrator = o.one_of("integrator", {"rA-half-1-momentum", "rA-half-1-kick"}, {}, default_integrator);
     const io::Json::List& pairs = o.list("pairs", true);
     for (std::size_t k = 0; k < pairs.size(); ++k)
         f.pairs.push_back(read_pair(f.source, pairs[k], "/pairs/" + std::to_string(k)));

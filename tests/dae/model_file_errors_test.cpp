@@ -144,7 +144,8 @@ const std::vector<InvalidModel> keys_and_types = {
     {"\"name\": \"bench\"", "\"name\": \"\"", "/name", "must be a name"},
     {"\"name\": \"bench\"", "\"name\": \"a\\nb\"", "/name", "must be a name without control characters, got \"a\\nb\""},
     {"\"gravity\"", "\"gravty\"", "/gravty", "unknown key \"gravty\"; did you mean 'gravity'?"},
-    {"\"end\": 2,", "\"colour\": 2,", "/colour", "unknown key \"colour\"; allowed: hilda_model, name"},
+    {"\"end\": 2,", "\"colour\": 2,", "/colour", "unknown key \"colour\"; allowed: $schema, hilda_model, "
+     "name, parameters, gravity, end, redundant, bodies, constraints, forces, contacts, outputs, events, note"},
     {"[0, 0, -9.81]", "-9.81", "/gravity", "gravity must be a list of 3 numbers, got -9.81"},
     {"[0, 0, -9.81]", "[0, -9.81]", "/gravity", "got [0, -9.81]"},
     {"[0, 0, -9.81]", "[0, 0, null]", "/gravity/2", "gravity must be a number, got null"},

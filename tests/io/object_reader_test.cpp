@@ -87,7 +87,7 @@ TEST_CASE("a reader refuses integers, texts and formulas that are none", "[io][o
 {
     const auto integer = [](io::ObjectReader& o) { o.integer("x"); };
     const auto text = [](io::ObjectReader& o) { o.text("x"); };
-    const auto formula = [](io::ObjectReader& o) { o.formula("x", {}, {"t"}); };
+    const auto formula = [](io::ObjectReader& o) { o.formula("x", {}, {}, {"t"}); };
     const auto of_names = [](io::ObjectReader& o) { o.formula_of_names("x", {"t"}); };
     CHECK(refusal_of_text(R"({"x": -2147483647})", integer).empty());
     CHECK(refusal_of_text(R"({"x": "1"})", integer) == "f:1:7 (/x): x must be a number, got \"1\"");
@@ -107,8 +107,8 @@ TEST_CASE("a reader refuses integers, texts and formulas that are none", "[io][o
 
     const io::JsonSource source(R"({"x": 2})", "f");
     io::ObjectReader o(source, source.root, "");
-    CHECK(o.formula("x", {}, {"t"}) == "2");
-    CHECK(o.formula("y", "t", {"t"}) == "t");
+    CHECK(o.formula("x", {}, {}, {"t"}) == "2");
+    CHECK(o.formula("y", {}, "t", {"t"}) == "t");
 }
 
 TEST_CASE("a file of another kind is refused with the command for it", "[io][object_reader]")

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include "io/json_source.hpp"
+#include "io/schema/schema_recorder.hpp"
 
 #include <catch2/catch.hpp>
 

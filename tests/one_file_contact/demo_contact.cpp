@@ -16,7 +16,8 @@ namespace {
 /// [-0.3, 0.3].
 std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
 {
-    const double R = o.positive("radius"), point = o.number("point", 0.1);
+    const double R = o.positive("radius", {"Radius R in the plane z = 0 [m].", "0.1"});
+    const double point = o.number("point", {"Taper [-].", "0.2", R"("minimum": -0.3, "maximum": 0.3)"}, 0.1);
     if (!(std::abs(point) <= 0.3))
         o.fail("point", "point must be from -0.3 to 0.3, got " + dae::shortest(point));
     const auto G = [R, point](auto x, auto y, auto z) {
@@ -28,13 +29,7 @@ std::shared_ptr<const Surface> read_egg(dae::ObjectReader& o)
 const bool egg = io::Registry<SurfaceType>::add(
     {.name = "demo-egg",
      .schema = {.description = "Egg-shaped surface with its long axis along z of the surface frame.",
-                .parts = {"pose"},
-                .keys = {{"radius", "Radius R in the plane z = 0 [m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true},
-                         {"point", "Taper [-].",
-                          R"("type": "number", "minimum": -0.3, "maximum": 0.3, "default": 0.1, )"
-                          R"("examples": [0.2])"}},
-                .example = R"("radius": 0.1)"},
+                .examples = {R"("radius": 0.1)"}},
      .read = read_egg});
 
 /// Viscous friction F = c ṡ, limited to μ_s N. It has no history.
@@ -60,13 +55,10 @@ const bool oil = io::Registry<FrictionLaw>::add(
     {.name = "demo-oil",
      .what = "viscous, limited to the Coulomb bound",
      .schema = {.description = "Viscous friction, limited to mu_s N.",
-                .parts = {"friction_parameters"},
-                .keys = {{"viscosity", "Coefficient c [N s/m].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [3])", true}},
-                .example = R"("mu_s": 0.3, "K_E": 1e4, "viscosity": 3)"},
+                .examples = {R"("mu_s": 0.3, "K_E": 1e4, "viscosity": 3)"}},
      .read = [](dae::ObjectReader& o, FrictionParameters p,
                 const NormalLaw&) -> std::shared_ptr<const FrictionModel> {
-         return std::make_shared<DemoOil>(o.positive("viscosity"), p.mu_s);
+         return std::make_shared<DemoOil>(o.positive("viscosity", {"Coefficient c [N s/m].", "3"}), p.mu_s);
      }});
 
 /// A normal force N = k δ^p of the overlap δ
@@ -85,14 +77,10 @@ private:
 const bool power = io::Registry<NormalLawType>::add(
     {.name = "demo-power",
      .schema = {.description = "Power law N = k delta^p of the overlap delta.",
-                .keys = {{"k", "Coefficient k [N/m^p].",
-                          R"("type": "number", "exclusiveMinimum": 0, "examples": [1e6])", true},
-                         {"p", "Exponent p [-].", R"("type": "number", "minimum": 1, "examples": [1.5])",
-                          true},
-                         dae::note_key},
-                .example = R"("k": 1e6, "p": 1.5)"},
+                .examples = {R"("k": 1e6, "p": 1.5)"}},
      .read = [](dae::ObjectReader& o) -> std::shared_ptr<const NormalLaw> {
-         const double k = o.positive("k"), p = o.number("p");
+         const double k = o.positive("k", {"Coefficient k [N/m^p].", "1e6"});
+         const double p = o.number("p", {"Exponent p [-].", "1.5", R"("minimum": 1)"});
          if (!(p >= 1)) o.fail("p", "p must be at least 1, got " + dae::shortest(p));
          return std::make_shared<DemoPower>(k, p);
      }});

@@ -40,21 +40,17 @@ private:
 
 const TypeSchema rope_schema = {
     .description = "Rope of constant length over two fixed pulleys, one row.",
-    .keys = {{"pulley_i", "Pulley of body i [m], in the global frame.",
-              R"("$ref": "#/$defs/vector", "examples": [[0, 0, 1]])", true},
-             {"pulley_j", "Pulley of body j [m], in the global frame.",
-              R"("$ref": "#/$defs/vector", "examples": [[1, 0, 1]])", true},
-             {"length", "Length of the free parts of the rope [m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [4])", true}},
-    .example = R"("body_i": "heavy", "body_j": "light", "pulley_i": [0, 0, 1], "pulley_j": [1, 0, 1], )"
-               R"("length": 4)"};
+    .examples = {R"("body_i": "heavy", "body_j": "light", "pulley_i": [0, 0, 1], "pulley_j": [1, 0, 1], )"
+                 R"("length": 4)"}};
 
 const bool rope_registered = hilda::io::Registry<ConstraintType>::add(
     {.name = "rope",
      .schema = rope_schema,
      .read = [](ObjectReader& o, int i, int j, const State&) -> ConstraintType::Constraints {
-         const Vec3 P = o.vec3("pulley_i"), Q = o.vec3("pulley_j");
-         return single_row(Rope(i, P, j, Q, o.positive("length")));
+         const Vec3 P = o.vec3("pulley_i", {"Pulley of body i [m], in the global frame.", "[0, 0, 1]"});
+         const Vec3 Q = o.vec3("pulley_j", {"Pulley of body j [m], in the global frame.", "[1, 0, 1]"});
+         return single_row(
+             Rope(i, P, j, Q, o.positive("length", {"Length of the free parts of the rope [m].", "4"})));
      }});
 
 /// F = -c v on the centre of mass of a body
@@ -69,20 +65,16 @@ private:
     const double c;
 };
 
-const TypeSchema drag_schema = {
-    .description = "Drag proportional to the velocity of the centre of mass.",
-    .parts = {"on_one_body"},
-    .keys = {{"coefficient", "Coefficient c [N s/m].",
-              R"("type": "number", "exclusiveMinimum": 0, "examples": [0.1])", true}},
-    .example = R"("body": "light", "coefficient": 0.1)"};
+const TypeSchema drag_schema = {.description = "Drag proportional to the velocity of the centre of mass.",
+                                .examples = {R"("body": "light", "coefficient": 0.1)"}};
 
 const bool drag_registered = hilda::io::Registry<ForceType>::add(
     {.name = "drag",
      .schema = drag_schema,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&) -> std::unique_ptr<Force> {
-         const int b = bodies.body(o, "body");
+         const int b = bodies.body(o, "body", {"The body.", R"("light")"});
          if (b == ground) o.fail("body", "drag must act on a movable body, got 'ground'");
-         return std::make_unique<Drag>(b, o.positive("coefficient"));
+         return std::make_unique<Drag>(b, o.positive("coefficient", {"Coefficient c [N s/m].", "0.1"}));
      }});
 
 }  // namespace

@@ -24,17 +24,15 @@ private:
     const int body;
 };
 
-const TypeSchema schema = {
-    .description = "Angular speed [rad/s] of a body: the column NAME.omega.",
-    .parts = {"named"},
-    .keys = {{"body", "", R"("$ref": "#/$defs/reference", "description": "The body.")", true}},
-    .example = R"("name": "turn", "body": "bar")"};
+const TypeSchema schema = {.description = "Angular speed [rad/s] of a body: the column NAME.omega.",
+                           .examples = {R"("name": "turn", "body": "bar")"}};
 
 const bool registered = io::Registry<OutputType>::add(
     {.name = "angular-speed",
      .schema = schema,
      .read = [](ObjectReader& o, const BodyFinder& bodies, const State&, const std::vector<std::string>&) {
-         return std::unique_ptr<Output>(std::make_unique<AngularSpeed>(bodies.body(o, "body")));
+         return std::unique_ptr<Output>(
+             std::make_unique<AngularSpeed>(bodies.body(o, "body", {"The body.", R"("bar")"})));
      }});
 
 }  // namespace

@@ -24,8 +24,8 @@ struct BristleContacts {
     {
         const auto r = [&](int b) { return b == dae::ground ? lie::Vec3(0, 0, 0) : pair.start.body[b].r; };
         const double mass = pair.i == dae::ground ? 1 : pair.model.mass().m[pair.i];
-        const double stiffness = o.positive("stiffness", mass);
-        const double max_stretch = o.number("most", 0.1 * (r(pair.j) - r(pair.i)).norm());
+        const double stiffness = o.positive("stiffness", {}, mass);
+        const double max_stretch = o.number("most", {}, 0.1 * (r(pair.j) - r(pair.i)).norm());
         if (max_stretch > 10) lie::reject("bristle", "the length must be at most 10 m", max_stretch);
         auto bristle = std::make_unique<Bristle>(pair.i, pair.j, stiffness, max_stretch);
         bristle->name = pair.name;

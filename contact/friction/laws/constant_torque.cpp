@@ -47,7 +47,11 @@ public:
 std::shared_ptr<const FrictionModel> read_constant_torque(dae::ObjectReader& o, FrictionParameters p,
                                                           const NormalLaw&)
 {
-    p.mu_r = o.not_negative("mu_r", 0);
+    p.mu_r = o.not_negative("mu_r",
+                            {"Coefficient of rolling resistance mu_r [-]. The magnitude of the torque is "
+                             "mu_r R N, with the effective radius R.",
+                             "0.01"},
+                            0);
     return std::make_shared<ConstantTorque>(p);
 }
 
@@ -57,12 +61,7 @@ const bool registered_constant_torque = io::Registry<FrictionLaw>::add(
      .schema = {.description = "Sliding friction as in slide-roll-spin. Rolling friction is a torque of "
                                "constant magnitude that opposes the rolling velocity (Fang 2022, Eq. 2.48). "
                                "It has no static regime: a body at rest shows small oscillations.",
-                .parts = {"friction_parameters"},
-                .keys = {{"mu_r",
-                          "Coefficient of rolling resistance mu_r [-]. The magnitude of the torque is mu_r R "
-                          "N, with the effective radius R.",
-                          R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
-                .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
+                .examples = {R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"}},
      .make = make_law<ConstantTorque>,
      .read = read_constant_torque});
 

@@ -73,7 +73,11 @@ private:
 
 std::shared_ptr<const FrictionModel> read_epsd(dae::ObjectReader& o, FrictionParameters p, const NormalLaw&)
 {
-    p.mu_r = o.not_negative("mu_r", 0);
+    p.mu_r = o.not_negative("mu_r",
+                            {"Coefficient of rolling resistance mu_r [-]. The torque is at most mu_r R N, "
+                             "with the effective radius R.",
+                             "0.01"},
+                            0);
     return std::make_shared<Epsd>(p);
 }
 
@@ -84,12 +88,7 @@ const bool registered_epsd = io::Registry<FrictionLaw>::add(
          {.description =
               "Sliding friction as in slide-roll-spin. Rolling friction is an elastic-plastic spring and "
               "damper on the relative rolling rotation (Fang 2022, Sec. 2.2.1.4; Ai et al. 2011, model C).",
-          .parts = {"friction_parameters"},
-          .keys = {{"mu_r",
-                    "Coefficient of rolling resistance mu_r [-]. The torque is at most mu_r R N, "
-                    "with the effective radius R.",
-                    R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"}},
-          .example = R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"},
+          .examples = {R"("mu_s": 0.4, "K_E": 10000, "mu_r": 0.01)"}},
      .make = make_law<Epsd>,
      .read = read_epsd});
 

@@ -247,13 +247,31 @@ std::shared_ptr<const FrictionModel> read_slide_roll_spin(dae::ObjectReader& o, 
                                                           const NormalLaw& normal)
 {
     o.exclude("eta_psi", "spin");
-    p.eta_r = o.not_negative("eta_r", 0);
+    p.eta_r = o.not_negative(
+        "eta_r",
+        {"Rolling resistance coefficient eta_r [-] (Fang 2022, Eq. 4.5). Zero: no rolling resistance.",
+         "0.05"},
+        0);
     if (o.find("spin") != nullptr) {
-        o.one_of("spin", {"hertz"});
+        o.one_of("spin", {"hertz"},
+                 {"Model of spinning resistance used instead of eta_psi. hertz: the torque of a Hertzian "
+                  "contact patch (Fang 2022, Sec. A.8).",
+                  R"("hertz")"});
         const std::optional<double> modulus = normal.modulus();
-        p.E_star = modulus && !o.has("E_star") ? *modulus : o.positive("E_star");
+        p.E_star =
+            modulus && !o.has("E_star")
+                ? *modulus
+                : o.positive(
+                      "E_star",
+                      {"Effective modulus E* of the contact patch [Pa], with \"spin\": \"hertz\" only. By "
+                       "default the modulus of a Hertzian normal law; required with any other normal law.",
+                       "1e7"});
     } else {
-        p.eta_psi = o.not_negative("eta_psi", 0);
+        p.eta_psi = o.not_negative("eta_psi",
+                                   {"Spinning resistance coefficient eta_psi [-] (Fang 2022, Eq. 4.9). Zero: "
+                                    "no spinning resistance.",
+                                    "0.01"},
+                                   0);
     }
     return std::make_shared<SlideRollSpin>(p);
 }
@@ -261,29 +279,13 @@ std::shared_ptr<const FrictionModel> read_slide_roll_spin(dae::ObjectReader& o, 
 const bool registered_slide_roll_spin = io::Registry<FrictionLaw>::add(
     {.name = "slide-roll-spin",
      .what = "from the motion of the contact point (Fang 2022, Sec. 4.3)",
-     .schema =
-         {.description = "Elastic-plastic springs and dampers for sliding, rolling and spinning, driven by "
-                         "the displacement of the contact point over the two surfaces (Fang 2022, Sec. 4.3). "
-                         "This is the default law. At most one of eta_psi and spin may be given.",
-          .parts = {"friction_parameters"},
-          .keys =
-              {{"eta_r",
-                "Rolling resistance coefficient eta_r [-] (Fang 2022, Eq. 4.5). Zero: no rolling resistance.",
-                R"("type": "number", "minimum": 0, "default": 0, "examples": [0.05])"},
-               {"eta_psi",
-                "Spinning resistance coefficient eta_psi [-] (Fang 2022, Eq. 4.9). Zero: no spinning "
-                "resistance.",
-                R"("type": "number", "minimum": 0, "default": 0, "examples": [0.01])"},
-               {"spin",
-                "Model of spinning resistance used instead of eta_psi. hertz: the torque of a Hertzian "
-                "contact patch (Fang 2022, Sec. A.8).",
-                R"("const": "hertz", "examples": ["hertz"])"},
-               {"E_star",
-                "Effective modulus E* of the contact patch [Pa], with \"spin\": \"hertz\" only. By default "
-                "the modulus of a Hertzian normal law; required with any other normal law.",
-                R"("type": "number", "exclusiveMinimum": 0, "examples": [1e7])"}},
-          .example = R"("mu_s": 0.5, "mu_k": 0.4, "K_E": 10000, "eta_r": 0.05)",
-          .rest = R"("dependentRequired": {"E_star": ["spin"]}, "not": {"required": ["eta_psi", "spin"]})"},
+     .schema = {.description =
+                    "Elastic-plastic springs and dampers for sliding, rolling and spinning, driven by "
+                    "the displacement of the contact point over the two surfaces (Fang 2022, Sec. 4.3). "
+                    "This is the default law. At most one of eta_psi and spin may be given.",
+                .examples = {R"("mu_s": 0.5, "mu_k": 0.4, "K_E": 10000, "eta_r": 0.05)",
+                             R"("mu_s": 0.5, "K_E": 10000, "spin": "hertz", "E_star": 1e7)"},
+                .rest = R"("dependentRequired": {"E_star": ["spin"]})"},
      .make = make_law<SlideRollSpin>,
      .read = read_slide_roll_spin});
 

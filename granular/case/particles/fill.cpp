@@ -12,15 +12,15 @@ FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius)
     f.low = o.vec3("low"), f.high = o.vec3("high");
     f.sizes = read_radius(o, radius);
     f.radius = f.sizes.largest();
-    const double spacing = o.number("spacing", 1.05);
+    const double spacing = o.number("spacing", {}, 1.05);
     if (!(spacing >= 1))
         o.fail("spacing", "spacing must be at least 1 diameter, got " + io::shortest(spacing));
     f.spacing = 2 * f.radius * spacing;
-    f.jitter = o.fraction("jitter", 0);
-    f.max_count = static_cast<std::size_t>(o.count("count", 0));
-    f.seed = static_cast<std::uint64_t>(o.count("seed", 1));
+    f.jitter = o.fraction("jitter", {}, 0);
+    f.max_count = static_cast<std::size_t>(o.count("count", {}, 0));
+    f.seed = static_cast<std::uint64_t>(o.count("seed", {}, 1));
     f.v = o.vec3("v", Vec3{0, 0, 0});
-    f.random_v = o.not_negative("random_v", 0);
+    f.random_v = o.not_negative("random_v", {}, 0);
     for (const auto& [low, high, axis] :
          {std::tuple{f.low.x, f.high.x, 0u}, {f.low.y, f.high.y, 1u}, {f.low.z, f.high.z, 2u}})
         if (!(high - low >= 2 * f.radius))

@@ -7,7 +7,7 @@
 #include "granular/insertion/sizes.hpp"
 #include "granular/reading/clump_keys.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <functional>
 

@@ -34,7 +34,7 @@ double read_particle(ObjectReader& o, Case& c, EntryKeys& keys, const WorldOptio
                .material = keys.material(o),
                .v = o.vec3("v", Vec3{0, 0, 0}),
                .omega = o.vec3("omega", Vec3{0, 0, 0}),
-               .fixed = o.flag("fixed", false),
+               .fixed = o.flag("fixed", {}, false),
                .replica = keys.replica(o),
                .attached_to = EntryKeys::attached_to(o, c)};
     if (o.has("orientation")) {

@@ -60,7 +60,4 @@ void set_one_of(Json& definitions, const std::string& group, const TypeKind& kin
                      [&](const Type& type) { return definition(kind, type.name, type.schema); });
 }
 
-/// A schema from a text. Throws PlacedError with `name`.
-Json parsed_schema(const std::string& text, const std::string& name);
-
 }  // namespace hilda::io

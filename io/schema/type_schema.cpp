@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
-#include "io/json_source.hpp"
+#include "io/schema/schema_recorder.hpp"
 
 namespace hilda::io {
 
@@ -38,11 +38,6 @@ Json definition(const TypeKind& kind, const std::string& name, const TypeSchema&
     all["examples"] = Json::array();
     all["examples"].push_back(example);
     return all;
-}
-
-Json parsed_schema(const std::string& text, const std::string& name)
-{
-    return JsonSource(text, name, text.size() + 1).root;
 }
 
 }  // namespace hilda::io

@@ -5,7 +5,10 @@
 
 namespace hilda::dae {
 
-bool Force::is_implicit_in(const lie::Scheme& scheme) const { return implicit && scheme.implicit_springs; }
+bool Force::is_implicit_in(const lie::Scheme& scheme) const
+{
+    return implicit && scheme.takes.contains(lie::Feature::springs);
+}
 
 double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const
 {

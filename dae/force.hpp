@@ -79,7 +79,7 @@ public:
     /// Whether the spring rows describe the force in every state, so that `implicit` may be set. The bodies
     /// of the rows are those of bodies().
     virtual bool may_be_implicit() const { return false; }
-    /// Whether integrators evaluate the spring rows implicitly if they can (lie::Scheme::implicit_springs).
+    /// Whether integrators evaluate the spring rows implicitly if they can (lie::Feature::springs).
     /// The force then has no stability limit with them.
     bool implicit = false;
     /// Stability limits of the steps for an explicit evaluation of the spring rows, with the effective masses

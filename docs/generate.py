@@ -122,6 +122,8 @@ def list_table(program, *arguments):
     def shown(value, column):
         if isinstance(value, bool):
             return "yes" if value else "no"
+        if isinstance(value, list):
+            value = ", ".join(value) or None
         text = NONE if value is None else str(value)
         return code(text) if column == 0 else prose(text)
 

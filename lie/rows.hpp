@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The variations of the constraint rows of a system, as sparse blocks.
+/// The variations of the constraint rows and of the springs of a system, as sparse blocks.
 
 #pragma once
 
@@ -108,6 +108,19 @@ struct Rows {
                    entry[n].pi.dot(q.template segment<3>(6 * entry[n].body + 3));
         return sum;
     }
+};
+
+/// The deflections S of springs and dampers, and the derivatives of their loads, which a scheme may evaluate
+/// implicitly.
+///
+/// Row n has the derivatives C of the deflection: Ṡ = C v, S̈ = C v̇ + γ with v = (ṙ, ω̄). Its load f in the
+/// direction of the deflection acts on the bodies as -Cᵀ f and is part of System::loads(). A row without load
+/// has zero derivatives in C.
+struct Springs {
+    Rows rows;
+    std::vector<double> stiffness;  ///< ∂f/∂S [N/m], or [N m/rad] for a rotation
+    std::vector<double> damping;    ///< ∂f/∂Ṡ [N s/m], or [N m s/rad]
+    std::vector<double> gamma;      ///< γ [m/s²], or [rad/s²]
 };
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;

@@ -18,25 +18,19 @@ const Scheme& scheme(const std::string& name)
 
 std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
 {
-    const auto require = [&](bool Scheme::*supports, const std::string& what) {
-        if (this->*supports) return;
+    const Features missing = features_of(system).without(takes);
+    for (const auto& [feature, key, text] : all_features()) {
+        if (!missing.contains(feature)) continue;
         std::string names;
         for (const Scheme& s : schemes())
-            if (s.*supports) names += (names.empty() ? "" : ", ") + s.name;
-        reject("integrator " + name, "does not support " + what + "; integrators that do are " + names, name);
-    };
-    const Rows& rows = system.pattern();
-    if (!rows.algebraic.empty()) require(&Scheme::algebraic, "evolving contacts");
-    if (!rows.regularised.empty()) require(&Scheme::regularised, "implicit friction");
-    if (rows.velocity_rows > 0) require(&Scheme::nonholonomic, "rolling without slip");
-    if (system.keeps_redundant_rows()) {
-        require(&Scheme::redundant, "redundant rows (\"redundant\": \"keep\" in the model file)");
-        if (settings.linear_solver == LinearSolver::klu)
-            reject(
-                "integrator " + name,
-                "redundant rows (\"redundant\": \"keep\" in the model file) need the condensed linear solver",
-                "klu");
+            if (s.takes.contains(feature)) names += (names.empty() ? "" : ", ") + s.name;
+        reject("integrator " + name,
+               "does not support " + std::string(text) + "; integrators that do are " + names, name);
     }
+    if (system.keeps_redundant_rows() && settings.linear_solver == LinearSolver::klu)
+        reject("integrator " + name,
+               "redundant rows (\"redundant\": \"keep\" in the model file) need the condensed linear solver",
+               "klu");
     return construct(system, settings);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "io/registry.hpp"
+#include "lie/features.hpp"
 #include "lie/loads.hpp"
 
 #include <memory>
@@ -36,13 +37,7 @@ struct Scheme {
     /// Largest h ω for which an undamped oscillator does not gain energy, at most 2. The stability limits of
     /// forces are those of 2.
     double stability = 2;
-    bool algebraic = false;     ///< supports algebraic variables: evolving contacts
-    bool nonholonomic = false;  ///< supports nonholonomic constraints: rolling without slip
-    bool regularised = false;   ///< supports regularised rows: implicit friction
-    bool redundant = false;     ///< supports redundant rows, see System::keeps_redundant_rows()
-    bool histories = true;      ///< takes loads with a history: System::internal_states_are_history()
-    bool implicit_springs =
-        false;  ///< evaluates System::spring_pattern() implicitly, see lie::ImplicitSprings
+    Features takes = {};  ///< what the scheme integrates besides holonomic constraints
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of
     /// the scheme. Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;
@@ -53,8 +48,8 @@ struct Scheme {
     /// The scheme that chooses its steps, if there is one; otherwise this scheme
     const Scheme& with_adaptive_steps() const { return adaptive_form ? *adaptive_form : *this; }
 
-    /// Constructs the integrator. Throws InvalidInput if the scheme does not support the variables or rows of
-    /// the system.
+    /// Constructs the integrator. Throws InvalidInput if the system has a feature that the scheme does not
+    /// take.
     std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
 };
 

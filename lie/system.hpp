@@ -20,7 +20,6 @@
 #include "lie/bounded_pair.hpp"
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
-#include "lie/springs.hpp"
 #include "lie/state.hpp"
 
 #include <string>

@@ -81,6 +81,7 @@ const bool registered =
                                .order_lambda = 2,
                                .formulation = "rA",
                                .unknowns = "none; projection",
-                               .source = "Heun (1900), with projection"});
+                               .source = "Heun (1900), with projection",
+                               .takes = {Feature::history}});
 
 }  // namespace

@@ -88,9 +88,7 @@ const bool registered_dop853 = register_with_adaptive_steps<RungeKuttaStep, dop8
      .formulation = "rA",
      .unknowns = "none; projection",
      .source = "Hairer, Nørsett, Wanner (1993), with projection",
-     .algebraic = true,
-     .nonholonomic = true,
-     .redundant = true});
+     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -41,9 +41,7 @@ const bool registered_dp_5 = register_with_adaptive_steps<RungeKuttaStep, dorman
      .unknowns = "none; projection",
      .source = "Dormand, Prince (1980), with projection",
      .stability = 1,
-     .algebraic = true,
-     .nonholonomic = true,
-     .redundant = true});
+     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -51,8 +51,7 @@ const bool registered_fully_implicit_1 = register_scheme<FullyImplicit1>(
      .unknowns = "r'', omega', lambda",
      .source = "Fang (2022), Sec. 3.4",
      .loads = LoadEvaluation::extrapolated,
-     .algebraic = true,
-     .redundant = true});
+     .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

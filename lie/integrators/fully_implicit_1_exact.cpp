@@ -136,7 +136,7 @@ const bool registered_fully_implicit_1_exact = register_scheme<FullyImplicit1Exa
      .unknowns = "r'', omega', lambda",
      .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix",
      .loads = LoadEvaluation::implicit,
-     .redundant = true});
+     .takes = {Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

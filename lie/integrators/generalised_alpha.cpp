@@ -305,8 +305,7 @@ const bool registered_generalised_alpha = register_scheme<GeneralisedAlpha>(
      .unknowns = "increment of (r, A), beta' h^2 lambda",
      .source = "Bruls, Cardona, Arnold (2012)",
      .loads = LoadEvaluation::implicit,
-     .algebraic = true,
-     .redundant = true,
+     .takes = {Feature::algebraic, Feature::redundant, Feature::history},
      .rho_infinity = true});
 
 }  // namespace

@@ -40,11 +40,8 @@ const bool registered_half_implicit_1 = register_scheme<HalfImplicit1>(
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Fang (2022), Sec. 3.5",
-     .algebraic = true,
-     .nonholonomic = true,
-     .regularised = true,
-     .redundant = true,
-     .implicit_springs = true,
+     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+               Feature::history, Feature::springs},
      .energy_drifts = true});
 
 }  // namespace

@@ -44,11 +44,8 @@ const bool registered_half_implicit_1_kick = register_scheme<HalfImplicit1Kick>(
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Fang (2022), Sec. 3.5, with start and velocities of leapfrog",
      .loads = LoadEvaluation::extrapolated,
-     .algebraic = true,
-     .nonholonomic = true,
-     .regularised = true,
-     .redundant = true,
-     .implicit_springs = true,
+     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+               Feature::history, Feature::springs},
      .energy_drifts = true});
 
 }  // namespace

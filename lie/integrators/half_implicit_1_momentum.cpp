@@ -122,11 +122,8 @@ const bool registered_half_implicit_1_momentum = register_scheme<HalfImplicit1Mo
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Hante, Arnold (2021) without velocity projection; Fang (2022), Sec. 3.5",
      .loads = LoadEvaluation::extrapolated,
-     .algebraic = true,
-     .nonholonomic = true,
-     .regularised = true,
-     .redundant = true,
-     .implicit_springs = true});
+     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+               Feature::history, Feature::springs}});
 
 }  // namespace
 }  // namespace hilda::lie

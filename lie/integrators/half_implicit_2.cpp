@@ -58,8 +58,7 @@ const bool registered_half_implicit_2 = register_scheme<HalfImplicit2>(
      .unknowns = "r, h omega, h^2 lambda",
      .source = "Fang (2022), Sec. 3.6",
      .loads = LoadEvaluation::extrapolated,
-     .algebraic = true,
-     .redundant = true,
+     .takes = {Feature::algebraic, Feature::redundant, Feature::history},
      .energy_drifts = true});
 
 }  // namespace

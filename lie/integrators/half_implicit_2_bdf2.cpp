@@ -82,8 +82,7 @@ const bool registered_half_implicit_2_bdf2 =
                                         .unknowns = "r, h omega, h^2 lambda",
                                         .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
                                         .loads = LoadEvaluation::extrapolated,
-                                        .algebraic = true,
-                                        .redundant = true,
+                                        .takes = {Feature::algebraic, Feature::redundant, Feature::history},
                                         .energy_drifts = true});
 
 }  // namespace

@@ -18,7 +18,7 @@ const bool registered_radau_5 = register_with_adaptive_steps<RadauStep>(
      .unknowns = "stages of r', omega, lambda",
      .source = "Hairer, Wanner (1996), on the Lie group",
      .loads = LoadEvaluation::implicit,
-     .nonholonomic = true});
+     .takes = {Feature::nonholonomic, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

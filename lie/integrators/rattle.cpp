@@ -35,8 +35,7 @@ const bool registered_rattle =
                              .formulation = "rA",
                              .unknowns = "r, h omega, h^2 lambda / 2",
                              .source = "Hante, Arnold (2021)",
-                             .algebraic = true,
-                             .redundant = true});
+                             .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -292,8 +292,7 @@ const bool registered_rattle_adaptive =
                                      .unknowns = "r, h omega, h^2 lambda / 2",
                                      .source = "Hairer, Söderlind (2005), with RATTLie",
                                      .adaptive = true,
-                                     .redundant = true,
-                                     .histories = false});
+                                     .takes = {Feature::redundant}});
 
 }  // namespace
 }  // namespace hilda::lie

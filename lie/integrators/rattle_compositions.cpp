@@ -109,8 +109,7 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
             .source = source,
-            .redundant = true,
-            .histories = false};
+            .takes = {Feature::redundant}};
 }
 
 const bool registered_rattle_compositions =

@@ -107,7 +107,6 @@ Scheme extrapolation(int order)
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
             .source = "Bulirsch, Stoer (1966)",
-            .histories = false,
             .energy_drifts = true};
 }
 

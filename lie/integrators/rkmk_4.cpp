@@ -62,9 +62,7 @@ const bool registered_rkmk_4 = register_scheme<Rkmk4>(
      .formulation = "rA",
      .unknowns = "none; projection",
      .source = "Munthe-Kaas (1998), with projection",
-     .algebraic = true,
-     .nonholonomic = true,
-     .redundant = true});
+     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

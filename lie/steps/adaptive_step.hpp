@@ -86,7 +86,7 @@ bool register_with_adaptive_steps(Scheme scheme)
 {
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
-    adaptive.histories = false;
+    adaptive.takes = adaptive.takes.without({Feature::history});
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<AdaptiveStep<Method>>(system, settings, more()...);
     };

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "lie/springs.hpp"
+#include "lie/rows.hpp"
 
 #include <memory>
 

@@ -45,7 +45,6 @@ lie::Scheme scheme_of(const py::object& integrator)
     scheme.order = scheme.order_lambda = type.attr("order").cast<int>();
     scheme.formulation = "rA";
     scheme.resumes = false;
-    scheme.histories = false;
     scheme.energy_drifts = true;
     return scheme;
 }

@@ -132,6 +132,7 @@ py::dict properties(const lie::Scheme& scheme)
     all["formulation"] = scheme.formulation;
     all["source"] = scheme.source;
     all["adaptive"] = scheme.adaptive || scheme.adaptive_form != nullptr;
+    all["takes"] = lie::keys(scheme.takes);
     return all;
 }
 

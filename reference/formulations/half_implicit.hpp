@@ -354,6 +354,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
          .source = "Fang (2022), Secs. 3.5, 3.9",
+         .takes = {lie::Feature::history},
          .energy_drifts = true});
     return lie::register_scheme<HalfImplicit<Coordinates, true>>(
         {.name = HalfImplicit<Coordinates, true>::name(),
@@ -364,6 +365,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .unknowns = unknowns,
          .source = "Fang (2022), Secs. 3.5, 3.9, half-step start",
          .loads = lie::LoadEvaluation::extrapolated,
+         .takes = {lie::Feature::history},
          .energy_drifts = true});
 }
 

@@ -39,8 +39,7 @@ bool register_ida(const std::string& name, const std::string& unknowns, const st
          .source = "SUNDIALS IDA; Fang (2022), Eq. 2.23",
          .adaptive = true,
          .resumes = false,
-         .loads = lie::LoadEvaluation::implicit,
-         .histories = false});
+         .loads = lie::LoadEvaluation::implicit});
 }
 
 const bool ggl = register_ida<RpForm::ggl>("ida-rp", "r, p, r', p', lambda, mu", "GGL-stabilised index 2");

@@ -57,7 +57,8 @@ const bool registered_rp_bdf2 =
                                   .formulation = "rp",
                                   .unknowns = "r'', p'', lambda, lambda_P",
                                   .source = "Fang (2022), Sec. 2.1.7, with BDF2",
-                                  .loads = lie::LoadEvaluation::implicit});
+                                  .loads = lie::LoadEvaluation::implicit,
+                                  .takes = {lie::Feature::history}});
 
 }  // namespace
 }  // namespace hilda::reference

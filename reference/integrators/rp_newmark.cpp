@@ -112,6 +112,7 @@ const bool newmark = lie::register_scheme<RpNewmark>(
      .unknowns = "r'', p'', lambda, lambda_P",
      .source = "Newmark (1959); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
+     .takes = {lie::Feature::history},
      .rho_infinity = true});
 const bool hht = lie::register_scheme<RpHht>(
     {.name = "rp-hht",
@@ -122,6 +123,7 @@ const bool hht = lie::register_scheme<RpHht>(
      .unknowns = "r'', p'', lambda, lambda_P",
      .source = "Hilber, Hughes, Taylor (1977); Arnold, Bruls (2007); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
+     .takes = {lie::Feature::history},
      .rho_infinity = true});
 
 }  // namespace

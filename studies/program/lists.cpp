@@ -7,6 +7,7 @@
 #include "io/json.hpp"
 #include "io/json_source.hpp"
 #include "io/option_values.hpp"
+#include "lie/features.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "studies/framework/problem.hpp"
@@ -111,16 +112,6 @@ int write_models(const std::string& folder)
     return io::exit_code::done;
 }
 
-namespace {
-
-std::string contacts_of(const lie::Scheme& s)
-{
-    if (!s.algebraic) return "-";
-    return s.nonholonomic ? "constraint, rolling" : "constraint";
-}
-
-}  // namespace
-
 int list_integrators(bool json)
 {
     if (json) {
@@ -132,8 +123,7 @@ int list_integrators(bool json)
                            {"order_lambda", s.adaptive ? io::Json() : io::Json(s.order_lambda)},
                            {"adaptive", s.adaptive},
                            {"adaptive_without_step", s.with_adaptive_steps().adaptive},
-                           {"evolving_contacts", s.algebraic},
-                           {"rolling_contacts", s.algebraic && s.nonholonomic},
+                           {"takes", lie::keys(s.takes)},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"source", s.source}});
@@ -141,16 +131,16 @@ int list_integrators(bool json)
         return io::exit_code::done;
     }
     std::vector<Line> lines = {
-        {"name", "order", "of lambda", "contacts", "formulation", "description", "unknowns", "source"}};
+        {"name", "order", "of lambda", "formulation", "description", "unknowns", "source", "takes"}};
     for (const lie::Scheme& s : lie::schemes())
         lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
-                         s.adaptive ? "-" : std::to_string(s.order_lambda), contacts_of(s), s.formulation,
-                         s.description, s.unknowns, s.source});
+                         s.adaptive ? "-" : std::to_string(s.order_lambda), s.formulation, s.description,
+                         s.unknowns, s.source, fmt::format("{}", fmt::join(lie::keys(s.takes), ", "))});
     print_aligned(lines);
-    std::cout
-        << "\ncontacts: supported contact constraints. constraint: without friction, or with friction as a "
-           "force; rolling: also rolling without slip.\nThe default is rA-half-1-momentum; hilda check names "
-           "the integrator that suits a model.\n";
+    std::cout << "\ntakes: what an integrator supports besides holonomic constraints.\n";
+    for (const lie::FeatureText& f : lie::all_features())
+        std::cout << fmt::format("  {}: {}\n", f.key, f.text);
+    std::cout << "The default is rA-half-1-momentum; hilda check names the integrator that suits a model.\n";
     return io::exit_code::done;
 }
 

@@ -57,7 +57,8 @@ const bool registered =
                                .order_lambda = 1,
                                .formulation = "rA",
                                .unknowns = "none",
-                               .source = "Fang (2022), Eqs. 2.9, 2.17"});
+                               .source = "Fang (2022), Eqs. 2.9, 2.17",
+                               .takes = {Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -102,18 +102,21 @@ TEST_CASE("check reports the rows, unknowns and curvatures of an evolving contac
                    Contains("recommended         --integrator rA-half-1-momentum; smooth motion"));
 }
 
-TEST_CASE("integrators list the contacts that they support and reject others", "[studies][evolving]")
+TEST_CASE("integrators list the features that they take and reject others", "[studies][evolving]")
 {
     const Scratch in;
     const ordered_json all = ordered_json::parse(call(in, {"integrators", "--json"}).out);
     for (const ordered_json& s : all) {
         INFO(s["name"]);
         const lie::Scheme& scheme = lie::scheme(s["name"]);
-        CHECK(s["evolving_contacts"] == scheme.algebraic);
-        CHECK(s["rolling_contacts"] == (scheme.algebraic && scheme.nonholonomic));
+        for (const lie::FeatureText& f : lie::all_features()) {
+            const auto listed = std::count(s["takes"].begin(), s["takes"].end(), std::string(f.key));
+            CHECK(listed == (scheme.takes.contains(f.feature) ? 1 : 0));
+        }
     }
-    CHECK_THAT(call(in, {"integrators"}).out,
-               Contains("constraint, rolling") && Contains("default is rA-half-1-momentum"));
+    CHECK_THAT(call(in, {"integrators"}).out, Contains("contacts, implicit_friction, rolling,") &&
+                                                  Contains("rolling: rolling without slip") &&
+                                                  Contains("default is rA-half-1-momentum"));
     const Ended refused = call(in, {"run", "ball_in_bowl", "--integrator", "rp-half-1"});
     CHECK(refused.code == 3);
     CHECK_THAT(refused.err, Contains("does not support evolving contacts; integrators that do are") &&

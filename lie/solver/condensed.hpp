@@ -21,6 +21,7 @@
 
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
+#include "lie/solver/saddle_factors.hpp"
 
 #include <array>
 #include <map>
@@ -28,7 +29,7 @@
 
 namespace hilda::lie {
 
-class Condensed {
+class Condensed final : public SaddleFactors {
 public:
     /// Finds the order of elimination and the number of operations. For the metric `unit` of Saddle, `mass`
     /// is the identity.
@@ -42,12 +43,12 @@ public:
     bool factor(const Rows& C, double shift = 0);
 
     /// Solves in place: (f, g) on entry, (x, λ) on return.
-    void solve(Eigen::VectorXd& b);
+    void solve(Eigen::VectorXd& b) override;
     /// The same for f = 0; the f in b is not read.
-    void solve_constraints(Eigen::VectorXd& b);
+    void solve_constraints(Eigen::VectorXd& b) override;
 
     /// The smallest ratio of a pivot to its diagonal entry of S
-    double smallest_pivot() const { return smallest; }
+    double reciprocal_condition() const override { return smallest; }
     /// Number of multiplications of a column of four numbers in one factorisation, including the assembly
     /// of S
     double operations() const { return products; }

@@ -24,8 +24,8 @@
 
 #pragma once
 
+#include "lie/loads.hpp"
 #include "lie/rows.hpp"
-#include "lie/solver/klu.hpp"
 #include "lie/solver/linear_solver.hpp"
 #include "lie/state.hpp"
 
@@ -37,6 +37,8 @@ namespace hilda::lie {
 
 class Condensed;
 class Elimination;
+class KluSaddle;
+class SaddleFactors;
 class System;
 
 /// The diagonal blocks of K for the bodies
@@ -45,7 +47,8 @@ enum class Metric {
     unit   ///< the identity, for least-squares problems with the constraint rows
 };
 
-/// The factored saddle matrix of a system.
+/// The factored saddle matrix of a system: its rows, the shift of redundant rows, and the refinement of the
+/// solution. Elimination removes the algebraic variables, and KluSaddle or Condensed factors the rest.
 ///
 /// solve() throws NonFinite if the solution is not finite.
 class Saddle {
@@ -124,24 +127,20 @@ public:
 
     /// KLU's estimate for the scaled matrix, or the smallest relative pivot of the condensed matrix
     double reciprocal_condition() const;
-    long factorizations() const { return klu.factorizations(); }  ///< with new pivots
+    long factorizations() const;  ///< with new pivots
     /// Number of factorisations in a fixed order: KLU with the pivots of an earlier one, or condensed
-    long refactorizations() const { return klu.refactorizations() + condensed_factorizations; }
+    long refactorizations() const;
     bool is_condensed() const { return condensed != nullptr; }
 
 private:
-    void analyse();
     void choose_solver();
     void set_rows(const State& x, std::span<const double> compliance);
     void leave_out_inactive();
-    void scale_rows();
-    void fill();
-    void factor(const State& x);
     void factor_rows(const State& x);
+    void factor_with_new_pivots(const State& x);
 
     /// The rows of the factored matrix: after the elimination of the algebraic variables, if there is one
     const Rows& solved() const;
-    void solve_solved(Eigen::VectorXd& b, bool only_constraints);
 
     void refine(Eigen::VectorXd& b, int most);
     bool is_rounding(const Eigen::VectorXd& change, const Eigen::VectorXd& of) const;
@@ -153,38 +152,26 @@ private:
     const System& system;
     const bool keeps;
     double shift = smallest_shift;
-    const Metric metric;
     const LinearSolver solver;
-    int bodies, m, unknowns;  ///< unknowns: number of algebraic variables
+    const int bodies, m, unknowns;  ///< unknowns: number of algebraic variables
+    const Mass unit;                ///< for Metric::unit
+    const Mass& mass;               ///< of the system, or `unit`
     Rows C;
+    std::vector<char> inactive;  ///< of each row, at the time of the analysis
 
-    std::unique_ptr<Elimination> elimination;  ///< of the algebraic variables; null if they remain in K
-    std::vector<char> inactive;                ///< of each row, at the time of the analysis
     bool chosen = false;                       ///< whether the solver for these rows has been chosen
+    std::unique_ptr<Elimination> elimination;  ///< of the algebraic variables; null if they remain in K
     Eigen::VectorXd reduced;                   ///< right side and solution after the elimination
-
-    std::unique_ptr<Condensed> condensed;
-    bool by_condensed = false;  ///< whether the present factors are those of `condensed`
+    std::unique_ptr<KluSaddle> klu;
+    std::unique_ptr<Condensed> condensed;  ///< null if KLU factors all matrices
+    SaddleFactors* factors;                ///< the present ones: `klu` or `condensed`
     long condensed_factorizations = 0;
 
-    // KLU factors S K S. The scaling S gives diagonal blocks and rows of length one.
-    Klu klu{Klu::Scaling::none};
-    Eigen::VectorXd scale;
-    /// Positions of a derivative in the matrix
-    struct Slot {
-        int upper, lower;  ///< in Φ_rᵀ or Π̄ᵀ, and in Φ_r or Π̄
-        double factor;     ///< product of the scales of its row and its column
-    };
-    std::vector<Slot> slot;
-    std::vector<int> mass_slot;
-    std::vector<int> unilateral_slot;   ///< diagonal entries of the unilateral rows
-    std::vector<int> regularised_slot;  ///< diagonal entries of the regularised rows
     Eigen::VectorXd work, residual, right_side;
     Eigen::VectorXd redundant;  ///< multipliers before minimise_multipliers()
 
     State assembled;  ///< state of the last assemble() with compliances, for refactor()
     State pivot_state;
-    bool scaled = false;
 };
 
 }  // namespace hilda::lie

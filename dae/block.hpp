@@ -57,7 +57,7 @@ public:
     virtual unsigned nonzero() const { return 0b111111111111; }
 
     // The functions of a general constraint
-    int position_rows() const final { return 1; }
+    Size size() const final { return {.position_rows = 1}; }
     void phi(const Arguments& x, double* out) const final { *out = phi(x); }
     void variation(const Arguments& x, Derivatives& out) const final;
     void nu(const Arguments& x, double* out) const final { *out = nu(x); }

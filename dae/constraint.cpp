@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Defaults of a constraint: variations by central differences, start, violations.
+/// Defaults of a constraint: variations by central differences.
 #include "dae/constraint.hpp"
 
 #include "dae/block.hpp"
-#include "lie/check.hpp"
+
+#include <algorithm>
 
 namespace hilda::dae {
 
@@ -83,37 +84,6 @@ GammaDerivatives Constraint::gamma_variation(const Arguments& x, int row) const
         (*part[c / 3])[c % 3] =
             central_difference([&](const Arguments& y) { return gamma(y, all), all[row]; }, x, c);
     return out;
-}
-
-int Constraint::start(const Arguments& x, double* alpha) const
-{
-    if (const std::string reason = start_error(x); !reason.empty()) throw lie::InvalidInput(reason);
-    update_alpha(x, true, alpha);
-    return active;
-}
-
-Constraint::Violation Constraint::position_violation(const Arguments& x, double tolerance) const
-{
-    Eigen::Matrix<double, max_position_rows, 1> Phi;
-    phi(x, Phi.data());
-    return {Phi.head(position_rows()).lpNorm<Eigen::Infinity>(), tolerance,
-            "the initial positions violate the constraint by", "m"};
-}
-
-Constraint::Violation Constraint::velocity_violation(const Arguments& x, double tolerance) const
-{
-    Derivatives C;
-    C.set_zero(*this);
-    variation(x, C);
-    Eigen::Matrix<double, max_rows, 1> right;
-    nu(x, right.data());
-    Eigen::Matrix<double, 6, 1> v_i, v_j;
-    v_i << x.bi.rdot, x.bi.omega_bar;
-    v_j << x.bj.rdot, x.bj.omega_bar;
-    return {(C.C_i * v_i + C.C_j * v_j - right.head(C.C_i.rows()))
-                .head(position_rows())
-                .lpNorm<Eigen::Infinity>(),
-            tolerance, "the initial velocities violate the constraint by", "m/s"};
 }
 
 void Block::variation(const Arguments& x, Derivatives& out) const

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "dae/body.hpp"
-#include "lie/bounded_pair.hpp"
 #include "lie/rows.hpp"
 
 #include <optional>
@@ -31,17 +30,19 @@ struct GammaDerivatives {
     } i, j;
 };
 
+class ContactConstraint;
+
 /// Position rows Φ(r, A, α, t) = 0 of two bodies with algebraic variables α, and velocity rows C_v v = 0.
 ///
 ///     M v̇ + Cᵀ λ = f,    Φ_αᵀ λ = 0,    Φ(r, A, α, t) = 0,    C_v v = 0     Fang (2022), Eqs. 5.31 to 5.36
 ///
 /// v = (ṙ, ω̄) are the velocities. C = (Φ_r, Π̄) holds the derivatives of all rows, and C_v is its part for
 /// the velocity rows. The constraint has fewer algebraic variables than position rows. Its velocity rows
-/// are nonholonomic constraints such as rolling. They have no Φ. They may be regularised, as friction rows
-/// are.
+/// are nonholonomic constraints such as rolling. They have no Φ. They may be regularised and bounded.
 ///
-/// Use this class for a constraint of several rows that share a computation, or that needs variables of its
-/// own, such as the contact points of two bodies in contact. A single scalar row is a Block.
+/// Derive from this class for a constraint of several rows that share a computation. A single scalar row is a
+/// Block. A constraint with algebraic variables, modes or bounded rows, such as a contact, is a
+/// ContactConstraint.
 ///
 /// A constraint is constant during a run. Everything that changes is in State: the algebraic variables, the
 /// internal states, the mode and the multipliers.
@@ -56,30 +57,7 @@ public:
     /// 12 = 8 position rows + 4 velocity rows
     static constexpr int max_rows = max_position_rows + max_velocity_rows;
 
-    /// Number of position rows, at most max_position_rows. In every function that takes a row number the
-    /// position rows come first and the velocity rows follow.
-    virtual int position_rows() const = 0;
-    /// Number of velocity rows, at most max_velocity_rows
-    virtual int velocity_rows() const { return 0; }
-    /// Number of algebraic variables α, smaller than position_rows()
-    virtual int algebraic_variables() const { return 0; }
-    /// Number of internal states in State::internal_state, such as the revolutions counted by a gear. Φ may
-    /// also use them to select one of several equivalent forms of its equations, such as a tangent basis.
-    virtual int internal_states() const { return 0; }
-
-    /// Whether the velocity rows are regularised in pairs, see lie::BoundedPair. The normal force of
-    /// each pair is N = n · λ, where λ are the multipliers of the first three position rows.
-    virtual bool is_regularised() const { return false; }
-    int regularised_pairs() const { return is_regularised() ? velocity_rows() / 2 : 0; }
-    /// Whether the compliance scale of this pair is determined before those of the pairs for which the
-    /// function returns false; see lie::BoundedRows
-    virtual bool solved_first(int /*pair*/) const { return false; }
-
-    /// Whether the constraint can be switched off. It then has a mode in State::discrete_state: `active` if
-    /// its rows are part of the equations, else a number defined by the derived class. If it is not active
-    /// its rows and multipliers are zero, and a step does not change its algebraic variables.
-    virtual bool may_be_inactive() const { return false; }
-    static constexpr int active = 0;
+    static constexpr int active = 0;  ///< the mode of a constraint whose rows are part of the equations
 
     /// Arguments of an evaluation: the motions of the two bodies, and the constraint's own part of the state
     struct Arguments {
@@ -90,6 +68,38 @@ public:
         int mode = active;                        ///< `active` for a constraint without modes
         const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or nullptr
     };
+
+    /// What the constraint adds to the equations. In every function that takes a row number the position rows
+    /// come first and the velocity rows follow.
+    struct Size {
+        int position_rows = 0;        ///< at most max_position_rows
+        int velocity_rows = 0;        ///< at most max_velocity_rows
+        int algebraic_variables = 0;  ///< α, fewer than position_rows
+        /// Pairs of velocity rows that are regularised and bounded, see lie::BoundedPair; the first velocity
+        /// rows
+        int bounded_pairs = 0;
+        /// Whether the constraint can be switched off. It then has a mode in State::discrete_state: `active`
+        /// if its rows are part of the equations, else a number defined by the derived class. If it is not
+        /// active its rows and multipliers are zero, and a step does not change its algebraic variables.
+        bool may_be_inactive = false;
+    };
+    virtual Size size() const = 0;
+    int position_rows() const { return size().position_rows; }
+    int velocity_rows() const { return size().velocity_rows; }
+    int algebraic_variables() const { return size().algebraic_variables; }
+    int bounded_pairs() const { return size().bounded_pairs; }
+    bool may_be_inactive() const { return size().may_be_inactive; }
+    /// This object if the constraint has algebraic variables, modes or bounded pairs; otherwise nullptr
+    virtual const ContactConstraint* as_contact() const { return nullptr; }
+
+    /// Number of internal states in State::internal_state, such as the revolutions counted by a gear. Φ may
+    /// also use them to select one of several equivalent forms of its equations, such as a tangent basis.
+    virtual int internal_states() const { return 0; }
+    /// Updates the internal states, at a start, where all are zero, and once per accepted step. Throws
+    /// lie::NumericalFailure if the run cannot continue.
+    virtual void update_internal_state(const Arguments& /*x*/, bool /*start*/,
+                                       double* /*internal_state*/) const
+    {}
 
     /// Φ: position_rows() numbers
     virtual void phi(const Arguments& x, double* out) const = 0;
@@ -117,8 +127,6 @@ public:
     virtual void nu(const Arguments& x, double* out) const;
     /// γ of all rows: C v̇ + Φ_α α̈ = γ for a position row, C v̇ = γ for a velocity row
     virtual void gamma(const Arguments& x, double* out) const = 0;
-    /// K, D, mu, S and n of the regularised pairs, in the order of their rows
-    virtual void regularisation(const Arguments& /*x*/, lie::BoundedPair* /*out*/) const {}
     /// Sparsity pattern of a row: bit c (0 to 11) is clear if the derivative with respect to component c of
     /// (r_i, π̄_i, r_j, π̄_j) is zero in every state.
     virtual unsigned nonzero(int /*row*/) const { return 0b111111111111; }
@@ -136,35 +144,6 @@ public:
     /// Reason why a run cannot start from x, in the form "what is wrong, got value". An empty string if it
     /// can.
     virtual std::string start_error(const Arguments& /*x*/) const { return {}; }
-    /// Computes α at a start and returns the mode of the constraint. `alpha` is the array x.alpha. Throws
-    /// lie::InvalidInput or lie::NumericalFailure if a run cannot start from x.
-    virtual int start(const Arguments& x, double* alpha) const;
-    /// Computes α for the poses of the bodies: algebraic_variables() numbers. `alpha` may be the array
-    /// x.alpha.
-    ///
-    /// With global_search = false the search starts from x.alpha. With global_search = true x.alpha is not
-    /// used, and α depends on the poses alone. Throws lie::NumericalFailure if no α is found.
-    virtual void update_alpha(const Arguments& /*x*/, bool /*global_search*/, double* /*alpha*/) const {}
-    /// Updates the internal states, at a start, where all are zero, and once per accepted step. Returns the
-    /// mode with which the run continues. Throws lie::NumericalFailure if it cannot continue.
-    virtual int update_internal_state(const Arguments& x, bool /*start*/, double* /*internal_state*/) const
-    {
-        return x.mode;
-    }
-    /// Mode of the constraint if its rows depend linearly on those of other constraints at the start;
-    /// `active` if the start then fails
-    virtual int mode_if_redundant() const { return active; }
-
-    /// Violation of an active constraint by the positions or velocities of a start
-    struct Violation {
-        double value = 0, most = 0;  ///< measured and largest accepted value
-        std::string text, unit;      ///< for the message "TEXT VALUE UNIT, at most MOST UNIT is allowed"
-    };
-    /// The default is the largest |Φ|, and `tolerance` for the largest accepted value.
-    virtual Violation position_violation(const Arguments& x, double tolerance) const;
-    /// The default is the largest |C v - ν| of the position rows.
-    virtual Violation velocity_violation(const Arguments& x, double tolerance) const;
-
     /// The two points that the constraint refers to; none for a constraint on orientations
     virtual std::optional<PointPair> points() const { return {}; }
 
@@ -178,8 +157,6 @@ public:
 
     // set by the model
     int first_row = 0, first_velocity_row = 0;  ///< numbers of the first position row and velocity row
-    int first_alpha = 0;                        ///< index into State::alpha
-    int first_discrete_state = 0;               ///< index into State::discrete_state
     int first_internal_state = 0;               ///< index into State::internal_state
 };
 

@@ -85,7 +85,16 @@ void Model::constrain(const std::string& name, std::unique_ptr<Constraint> c)
                     "'" + body_name(c->i) + "' twice");
     if (!used_names.insert(name).second)
         lie::reject("dae::Model::constrain", "two constraints have the same name", "'" + name + "'");
+    const Constraint::Size size = c->size();
+    const int of_contact = size.algebraic_variables + size.bounded_pairs + size.may_be_inactive;
+    if (of_contact > 0 && c->as_contact() == nullptr)
+        lie::reject("constraint '" + name + "'",
+                    "algebraic variables, bounded pairs and modes need a dae::ContactConstraint; their "
+                    "number must be 0",
+                    of_contact);
     c->name = name;
+    if (auto* contact = dynamic_cast<ContactConstraint*>(c.get()); contact != nullptr)
+        contacts.push_back(contact);
     general_constraint.push_back(std::move(c));
     set_pattern();
 }
@@ -143,11 +152,13 @@ void Model::prepare(State& x)
     std::iota(active.begin(), active.end(), 0);
     set_pattern();  // a complement may have other nonzero derivatives than its block
     int alphas = 0;
-    for (const auto& c : general_constraint) {
+    for (ContactConstraint* c : contacts) {
         c->first_alpha = alphas;
         alphas += c->algebraic_variables();
         c->first_discrete_state = discrete_states;
         discrete_states += c->may_be_inactive();
+    }
+    for (const auto& c : general_constraint) {
         c->first_internal_state = internal_states;
         internal_states += c->internal_states();
     }
@@ -160,8 +171,12 @@ void Model::prepare(State& x)
             throw ConstraintError(name_of(c) + ": " + e.what(), static_cast<int>(k), true);
         };
         try {
-            const int mode = c.start(arguments(c, x), x.alpha.data() + c.first_alpha);
-            if (c.may_be_inactive()) x.discrete_state[c.first_discrete_state] = mode;
+            if (const ContactConstraint* const contact = c.as_contact(); contact != nullptr) {
+                const int mode = contact->start(arguments(c, x), x.alpha.data() + contact->first_alpha);
+                if (contact->may_be_inactive()) x.discrete_state[contact->first_discrete_state] = mode;
+            } else if (const std::string reason = c.start_error(arguments(c, x)); !reason.empty()) {
+                throw lie::InvalidInput(reason);
+            }
         } catch (const lie::InvalidInput& e) {
             fail(e);
         } catch (const lie::NumericalFailure& e) {  // at a start this is invalid input
@@ -288,8 +303,9 @@ void Model::set_pattern()
         add_to_pattern(*c, c->position_rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
         for (int k = c->first_velocity_row; k < rows_pattern.rows(); ++k) {
-            if (c->may_be_inactive() || c->is_regularised()) rows_pattern.unilateral.push_back(k);
-            if (c->is_regularised()) rows_pattern.regularised.push_back(k);
+            const bool is_bounded = k < c->first_velocity_row + 2 * c->bounded_pairs();
+            if (c->may_be_inactive() || is_bounded) rows_pattern.unilateral.push_back(k);
+            if (is_bounded) rows_pattern.regularised.push_back(k);
         }
     }
 }

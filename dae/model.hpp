@@ -5,7 +5,7 @@
 #pragma once
 
 #include "dae/block.hpp"
-#include "dae/constraint.hpp"
+#include "dae/constraints/contact_constraint.hpp"
 #include "dae/force.hpp"
 #include "lie/check.hpp"
 #include "lie/system.hpp"
@@ -73,10 +73,11 @@ public:
     /// Arguments of a constraint in the state x. They refer to x.
     Constraint::Arguments arguments(const Constraint& c, const State& x) const
     {
+        const ContactConstraint* const contact = c.as_contact();
         return {motion(x, c.i),
                 motion(x, c.j),
                 x.t,
-                x.alpha.data() + c.first_alpha,
+                contact != nullptr ? x.alpha.data() + contact->first_alpha : nullptr,
                 x.internal_state.data() + c.first_internal_state,
                 mode(c, x),
                 &x.lambda};
@@ -89,13 +90,16 @@ public:
     }
     /// Whether a constraint is switched off. Its rows are then zero.
     static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
-    /// Mode of a constraint, see Constraint::may_be_inactive()
+    /// Mode of a constraint, see Constraint::Size::may_be_inactive
     static int mode(const Constraint& c, const State& x)
     {
-        return c.may_be_inactive() ? x.discrete_state[c.first_discrete_state] : Constraint::active;
+        const ContactConstraint* const contact = c.as_contact();
+        return contact != nullptr && contact->may_be_inactive()
+                   ? x.discrete_state[contact->first_discrete_state]
+                   : Constraint::active;
     }
     /// Sets the mode in x, and the multipliers of the constraint to zero.
-    static void set_mode(const Constraint& c, State& x, int mode);
+    static void set_mode(const ContactConstraint& c, State& x, int mode);
     std::string name_of(const Constraint& c) const;
 
     /// Adds a force. Throws lie::InvalidInput for an unknown body number.
@@ -235,6 +239,7 @@ private:
     };
     std::vector<SingleRow> single_rows;
     std::vector<std::unique_ptr<Constraint>> general_constraint;
+    std::vector<ContactConstraint*> contacts;  ///< those of them that are contacts
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state

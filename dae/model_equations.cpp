@@ -140,19 +140,18 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
 
 void Model::update_alpha(State& x) const
 {
-    for (const auto& c : general_constraint)
+    for (const ContactConstraint* c : contacts)
         if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->first_alpha);
 }
 
 std::vector<lie::BoundedPair> Model::bounded_pairs() const
 {
     std::vector<lie::BoundedPair> pairs;
-    for (const auto& c : general_constraint)
-        for (int n = 0; n < c->regularised_pairs(); ++n) {
+    for (const ContactConstraint* c : contacts)
+        for (int n = 0; n < c->bounded_pairs(); ++n) {
             pairs.emplace_back();
             pairs.back().first = c->first_velocity_row + 2 * n;
             pairs.back().normal_row = c->first_row;
-            pairs.back().solved_first = c->solved_first(n);
         }
     return pairs;
 }
@@ -160,10 +159,12 @@ std::vector<lie::BoundedPair> Model::bounded_pairs() const
 void Model::update_pairs(const State& x, std::vector<lie::BoundedPair>& pairs) const
 {
     lie::BoundedPair* pair = pairs.data();
-    for (const auto& c : general_constraint) {
-        for (int p = 0; p < c->regularised_pairs(); ++p) pair[p].K = 0;
-        if (!inactive(*c, x)) c->regularisation(arguments(*c, x), pair);
-        pair += c->regularised_pairs();
+    for (const ContactConstraint* c : contacts) {
+        const int number = c->bounded_pairs();
+        if (number == 0) continue;
+        for (int p = 0; p < number; ++p) pair[p].K = 0;
+        if (!inactive(*c, x)) c->set_pairs(arguments(*c, x), pair);
+        pair += number;
     }
 }
 
@@ -308,13 +309,15 @@ void Model::update_constraint_states(State& x, bool start) const
         r.block->update_internal_state(arguments(*r.block, x), start,
                                        x.internal_state.data() + r.block->first_internal_state);
     for (const auto& c : general_constraint) {
-        const int after = c->update_internal_state(arguments(*c, x), start,
-                                                   x.internal_state.data() + c->first_internal_state);
-        if (after != mode(*c, x)) set_mode(*c, x, after);
+        double* const state = x.internal_state.data() + c->first_internal_state;
+        if (const ContactConstraint* const contact = c->as_contact(); contact == nullptr)
+            c->update_internal_state(arguments(*c, x), start, state);
+        else if (const int after = contact->update_mode(arguments(*c, x), start, state); after != mode(*c, x))
+            set_mode(*contact, x, after);
     }
 }
 
-void Model::set_mode(const Constraint& c, State& x, int mode)
+void Model::set_mode(const ContactConstraint& c, State& x, int mode)
 {
     x.discrete_state[c.first_discrete_state] = mode;
     x.lambda.segment(c.first_row, c.position_rows()).setZero();

@@ -21,8 +21,9 @@ const Constraint& general_constraint_of_row(const Model& model, const State& x, 
     for (const bool velocity_level : {false, true})
         for (const auto& c : model.general_constraints()) {
             if (Model::inactive(*c, x)) continue;
-            const int remaining_velocity_rows = c->is_regularised() ? 0 : c->velocity_rows();
-            row += velocity_level ? remaining_velocity_rows : c->position_rows() - c->algebraic_variables();
+            const Constraint::Size size = c->size();
+            row += velocity_level ? size.velocity_rows - 2 * size.bounded_pairs
+                                  : size.position_rows - size.algebraic_variables;
             if (k < row) return *c;
         }
     throw std::logic_error("no general constraint has this row");
@@ -104,8 +105,9 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     }
     std::vector<std::string> undetermined;
     for (const Constraint* c : dependent_contacts)
-        if (c->mode_if_redundant() != Constraint::active)
-            Model::set_mode(*c, x, c->mode_if_redundant());
+        if (const ContactConstraint* const contact = c->as_contact();
+            contact != nullptr && contact->mode_if_redundant() != Constraint::active)
+            Model::set_mode(*contact, x, contact->mode_if_redundant());
         else if (undetermined.empty() || undetermined.back() != c->label())
             undetermined.push_back(c->label());
     std::string names;

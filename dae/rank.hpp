@@ -20,7 +20,7 @@ using lie::State;
 /// independent of the units. Of J̄ the diagonal is used.
 ///
 /// Algebraic variables are eliminated first, so that one row remains of a contact. If this row is redundant
-/// the contact force is not determined. The contact then takes the mode Constraint::mode_if_redundant() in x.
+/// the contact force is not determined. The contact then takes ContactConstraint::mode_if_redundant() in x.
 /// Throws lie::NumericalFailure "contact_rank" with the names of such contacts if that mode is `active`, and
 /// lie::SingularMatrix if SuiteSparseQR fails.
 std::vector<int> dependent_rows(const Model& model, State& x, double tolerance);

@@ -202,17 +202,51 @@ int number_of_redundant(const Model& model, State x)
     }
 }
 
+/// Violations of a general constraint: of a contact its own, otherwise the largest |Φ|, and the largest
+/// |C v - ν| of the position rows
+ContactConstraint::Violation position_violation(const Constraint& c, const Constraint::Arguments& x,
+                                                double tolerance)
+{
+    if (const ContactConstraint* const contact = c.as_contact(); contact != nullptr)
+        return contact->position_violation(x, tolerance);
+    Eigen::Matrix<double, Constraint::max_position_rows, 1> Phi;
+    c.phi(x, Phi.data());
+    return {Phi.head(c.position_rows()).lpNorm<Eigen::Infinity>(), tolerance,
+            "the initial positions violate the constraint by", "m"};
+}
+
+ContactConstraint::Violation velocity_violation(const Constraint& c, const Constraint::Arguments& x,
+                                                double tolerance)
+{
+    if (const ContactConstraint* const contact = c.as_contact(); contact != nullptr)
+        return contact->velocity_violation(x, tolerance);
+    Constraint::Derivatives C;
+    C.set_zero(c);
+    c.variation(x, C);
+    Eigen::Matrix<double, Constraint::max_rows, 1> right;
+    c.nu(x, right.data());
+    Eigen::Matrix<double, 6, 1> v_i, v_j;
+    v_i << x.bi.rdot, x.bi.omega_bar;
+    v_j << x.bj.rdot, x.bj.omega_bar;
+    return {(C.C_i * v_i + C.C_j * v_j - right.head(C.C_i.rows()))
+                .head(c.position_rows())
+                .lpNorm<Eigen::Infinity>(),
+            tolerance, "the initial velocities violate the constraint by", "m/s"};
+}
+
+using ViolationOf = ContactConstraint::Violation(const Constraint& c, const Constraint::Arguments& x,
+                                                 double tolerance);
+
 /// Throws ConstraintError if a violation of an active general constraint exceeds its limit, unless the
 /// initial state may be projected. Records the largest violation.
-template <class ViolationOf>
 void check_general_constraints(const Model& model, const State& x, const StartOptions& options,
-                               ViolationOf violation_of, double& residual, std::string& worst,
+                               ViolationOf* violation_of, double& residual, std::string& worst,
                                std::string& text)
 {
     for (size_t k = 0; k < model.general_constraints().size(); ++k) {
         const Constraint& c = *model.general_constraints()[k];
         if (Model::inactive(c, x)) continue;
-        const Constraint::Violation v = violation_of(c, model.arguments(c, x));
+        const ContactConstraint::Violation v = violation_of(c, model.arguments(c, x), options.tolerance);
         if (!options.fix_initial && !(v.value <= v.most))
             throw ConstraintError(model.name_of(c) + ": " + v.text + " " + number(v.value) + " " + v.unit +
                                       ", at most " + number(v.most) + " " + v.unit +
@@ -266,12 +300,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                   model.all_rows()[position.row].constraint);
     }
 
-    check_general_constraints(
-        model, x, options,
-        [&](const Constraint& c, const Constraint::Arguments& at) {
-            return c.position_violation(at, options.tolerance);
-        },
-        report.position_residual, report.worst_position, report.position_violation);
+    check_general_constraints(model, x, options, position_violation, report.position_residual,
+                              report.worst_position, report.position_violation);
     const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().algebraic_variables();
@@ -280,8 +310,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     for (const auto& c : model.general_constraints())
         if (Model::inactive(*c, x))
             report.rank -= c->position_rows() - c->algebraic_variables() + c->velocity_rows();
-        else if (c->is_regularised())
-            report.rank -= c->velocity_rows();
+        else
+            report.rank -= 2 * c->bounded_pairs();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
     lie::Saddle K(model, lie::Metric::mass, start_solver(model));
@@ -298,12 +328,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                       "; use --fix-initial to project them onto the constraints",
                                   model.all_rows()[velocity.row].constraint);
     }
-    check_general_constraints(
-        model, x, options,
-        [&](const Constraint& c, const Constraint::Arguments& at) {
-            return c.velocity_violation(at, options.tolerance);
-        },
-        report.velocity_residual, report.worst_velocity, report.velocity_violation);
+    check_general_constraints(model, x, options, velocity_violation, report.velocity_residual,
+                              report.worst_velocity, report.velocity_violation);
     if (model.rows() > 0) {
         lie::project_velocities(model, K, x);
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;

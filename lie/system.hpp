@@ -63,7 +63,7 @@ public:
 
     /// The pairs of regularised rows, with the rows of each. The default is for systems without such rows.
     virtual std::vector<BoundedPair> bounded_pairs() const { return {}; }
-    /// Sets K, D, mu, S and n of the pairs in the state x; `pair` is a copy of bounded_pairs().
+    /// Sets K, D, mu, S, n and solved_first of the pairs in the state x; `pair` is a copy of bounded_pairs().
     virtual void update_pairs(const State& /*x*/, std::vector<BoundedPair>& /*pair*/) const {}
 
     /// The springs and dampers that half-implicit schemes evaluate implicitly. Their values are not used. The

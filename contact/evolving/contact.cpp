@@ -102,7 +102,7 @@ EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape
 EvolvingContact::EvolvingContact(int i, const Shape& shape_i, int j, const Shape& shape_j, Friction friction,
                                  const ImplicitFriction& law, NormalRows normal_rows,
                                  const Unilateral& unilateral)
-    : Constraint(i, j), shape_i(shape_i), shape_j(shape_j), L(characteristic_length(shape_i, shape_j)),
+    : ContactConstraint(i, j), shape_i(shape_i), shape_j(shape_j), L(characteristic_length(shape_i, shape_j)),
       friction(friction), law(law), normal_rows(normal_rows), unilateral(unilateral),
       common_normal(shape_i, shape_j), detector(make_detector(shape_i, shape_j)),
       other_points(OtherPoints::of(shape_i, shape_j))
@@ -221,7 +221,7 @@ Mat3 EvolvingContact::lever_arms(const Mat3& K_sum, const Vec3& n) const
            along.transpose();
 }
 
-void EvolvingContact::regularisation(const Arguments& x, lie::BoundedPair* out) const
+void EvolvingContact::set_pairs(const Arguments& x, lie::BoundedPair* out) const
 {
     const Vec3 n = Side(shape_i, x.bi, x.alpha).n;
     const auto set_pair = [&](lie::BoundedPair& pair, const NodeState::Pair& saved, double K, double D,
@@ -230,7 +230,6 @@ void EvolvingContact::regularisation(const Arguments& x, lie::BoundedPair* out) 
         pair.S = saved.S;
         pair.mu = factor * (saved.slipping != 0 ? law.mu_k : law.mu_s);
     };
-    if (!is_regularised()) return;
     const auto state = restored<NodeState>(x.internal_state);
     set_pair(out[sliding_pair], state.sliding, law.K_E, law.K_D, 1);
     if (!law.has_rolling_resistance()) return;
@@ -238,6 +237,7 @@ void EvolvingContact::regularisation(const Arguments& x, lie::BoundedPair* out) 
     const double kappa = 2 / lever_arms(at.K_i + at.K_j, n).trace();
     set_pair(out[rolling_pair], state.rolling, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
              2 * law.eta_r);
+    out[rolling_pair].solved_first = true;
 }
 
 /// Updates S, Z and the slip flags from the multipliers of the last step (see ImplicitFriction). They are set
@@ -253,7 +253,7 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, NodeState&
         return;
     }
     lie::BoundedPair pair[2];
-    regularisation(x, pair);
+    set_pairs(x, pair);
     const Vec3 Psi = x.lambda->segment<3>(first_row);
     const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
     for (const RowPair p : {sliding_pair, rolling_pair}) {
@@ -316,7 +316,7 @@ void EvolvingContact::update_alpha(const Arguments& x, bool global_search, doubl
     Vec3::Map(alpha + 3) = a_j;
 }
 
-int EvolvingContact::update_internal_state(const Arguments& x, bool start, double* internal_state) const
+int EvolvingContact::update_mode(const Arguments& x, bool start, double* internal_state) const
 {
     if (x.mode == fallback_active) return fallback_active;
     const ContactPoint at = contact_point(x);
@@ -363,12 +363,13 @@ double EvolvingContact::separation_speed(const Arguments& x) const
     return at.n.dot(dae::velocity_at(x.bi, at.C_i - x.bi.r) - dae::velocity_at(x.bj, at.C_j - x.bj.r));
 }
 
-dae::Constraint::Violation EvolvingContact::position_violation(const Arguments& x, double) const
+dae::ContactConstraint::Violation EvolvingContact::position_violation(const Arguments& x, double) const
 {
     return {std::abs(gap(x)), 1e-6 * L, "not in contact at the start, the gap or overlap is", "m"};
 }
 
-dae::Constraint::Violation EvolvingContact::velocity_violation(const Arguments& x, double tolerance) const
+dae::ContactConstraint::Violation EvolvingContact::velocity_violation(const Arguments& x,
+                                                                      double tolerance) const
 {
     const ContactPoint at = contact_point(x);
     const Vec3 slip = dae::velocity_at(x.bi, at.C_i - x.bi.r) - dae::velocity_at(x.bj, at.C_j - x.bj.r);

@@ -10,7 +10,7 @@
 #include "contact/evolving/implicit_friction.hpp"
 #include "contact/internal_state.hpp"
 #include "contact/shape.hpp"
-#include "dae/constraint.hpp"
+#include "dae/constraints/contact_constraint.hpp"
 
 namespace hilda::contact {
 
@@ -54,10 +54,10 @@ struct Unilateral {
 /// Its failure "contact_not_unique" ends the run also with a fallback, which has the force of one point as
 /// well.
 ///
-/// For an active contact update_internal_state() throws lie::NumericalFailure: "contact_lost" if
+/// For an active contact update_mode() throws lie::NumericalFailure: "contact_lost" if
 /// n_i · n_j ≥ -½, and "contact_singular" if the smaller eigenvalue of K_i + K_j in the tangent plane, times
 /// L, is at most 1e-6. With a fallback it returns fallback_active instead.
-class EvolvingContact final : public dae::Constraint {
+class EvolvingContact final : public dae::ContactConstraint {
 public:
     enum class NormalRows { tangent, fixed_xy };
     enum class Friction {
@@ -81,14 +81,16 @@ public:
                     const ImplicitFriction& friction, NormalRows normal_rows = NormalRows::tangent,
                     const Unilateral& unilateral = {});
 
-    int position_rows() const override { return 7; }
-    int velocity_rows() const override
+    Size size() const override
     {
-        return friction == Friction::none ? 0 : law.has_rolling_resistance() ? 4 : 2;
+        const int tangential_rows = friction == Friction::none ? 0 : law.has_rolling_resistance() ? 4 : 2;
+        return {.position_rows = 7,
+                .velocity_rows = tangential_rows,
+                .algebraic_variables = 6,
+                .bounded_pairs = is_regularised() ? tangential_rows / 2 : 0,
+                .may_be_inactive = unilateral.enabled || fallback};
     }
-    bool is_regularised() const override { return friction == Friction::implicit; }
-    bool solved_first(int pair) const override { return pair == rolling_pair; }
-    int algebraic_variables() const override { return 6; }
+    bool is_regularised() const { return friction == Friction::implicit; }
     using Mat32 = Eigen::Matrix<double, 3, 2>;
     /// The internal state of the contact at the last node
     struct NodeState {
@@ -114,16 +116,15 @@ public:
         inactive = 1,        ///< an open unilateral contact; it may become active again
         fallback_active = 2  ///< replaced by a contact force until the end of the run
     };
-    bool may_be_inactive() const override { return unilateral.enabled || fallback; }
     int mode_if_redundant() const override { return fallback ? fallback_active : active; }
 
     void phi(const Arguments& x, double* out) const override;
     void variation(const Arguments& x, Derivatives& out) const override;
     void gamma(const Arguments& x, double* out) const override;
     unsigned nonzero(int row) const override;
-    void regularisation(const Arguments& x, lie::BoundedPair* out) const override;
+    void set_pairs(const Arguments& x, lie::BoundedPair* out) const override;
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
-    int update_internal_state(const Arguments& x, bool start, double* internal_state) const override;
+    int update_mode(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;
     /// The mode is fallback_active if start_error() has a reason and there is a fallback. A unilateral
     /// contact starts inactive if it has a gap, or if its gap is zero and changes.

@@ -109,14 +109,13 @@ std::string PointOnCurve::start_error(const Arguments& x) const
     return {};
 }
 
-int PointOnCurve::update_internal_state(const Arguments& x, bool start, double* saved) const
+void PointOnCurve::update_internal_state(const Arguments& x, bool start, double* saved) const
 {
     Foot f = nearest(position(x), start ? s : saved[0]);
     Vec3::Map(saved + 1) = start ? f.c_s.unitOrthogonal() : Vec3(Vec3::Map(saved + 1));
     f.set_normals(Vec3::Map(saved + 1));
     saved[0] = f.s;
     Vec3::Map(saved + 1) = f.n[0];
-    return x.mode;
 }
 
 namespace {

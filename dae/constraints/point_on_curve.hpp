@@ -27,7 +27,7 @@ public:
         : Constraint(i, j), s_bar_i(s_bar_i), c(std::move(c)), s(s)
     {}
 
-    int position_rows() const override { return 2; }
+    Size size() const override { return {.position_rows = 2}; }
     int internal_states() const override { return 4; }  ///< s, e
 
     void phi(const Arguments& x, double* out) const override;
@@ -35,7 +35,7 @@ public:
     void gamma(const Arguments& x, double* out) const override;
     std::string start_error(const Arguments& x) const override;
     /// Throws lie::NumericalFailure "curve_lost" if the curve has no nearest point or no tangent there.
-    int update_internal_state(const Arguments& x, bool start, double* saved) const override;
+    void update_internal_state(const Arguments& x, bool start, double* saved) const override;
 
 private:
     struct Foot;

@@ -28,10 +28,9 @@ public:
     {}
 
     int internal_states() const override { return 1; }
-    int update_internal_state(const Arguments& x, bool, double* saved) const override
+    void update_internal_state(const Arguments& x, bool, double* saved) const override
     {
         saved[0] = angle(x).value;
-        return x.mode;
     }
 
     double phi(const Arguments& x) const override

@@ -32,10 +32,9 @@ public:
     {}
 
     int internal_states() const override { return 2; }
-    int update_internal_state(const Arguments& x, bool, double* saved) const override
+    void update_internal_state(const Arguments& x, bool, double* saved) const override
     {
         saved[0] = angle_i(x).value, saved[1] = angle_j(x).value;
-        return x.mode;
     }
 
     double phi(const Arguments& x) const override

@@ -29,7 +29,7 @@ public:
     };
     PythonConstraint(int i, int j, int rows, Functions functions);
 
-    int position_rows() const override { return rows; }
+    Size size() const override { return {.position_rows = rows}; }
     void phi(const Arguments& x, double* out) const override;
     void variation(const Arguments& x, Derivatives& out) const override;
     void nu(const Arguments& x, double* out) const override;

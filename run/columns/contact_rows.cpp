@@ -25,8 +25,9 @@ RowsOfGeneralConstraints rows_of_general_constraints(const dae::Model& model, co
 {
     RowsOfGeneralConstraints count;
     for (const auto& c : model.general_constraints()) {
+        const dae::Constraint::Size size = c->size();
         const int rows =
-            c->position_rows() - c->algebraic_variables() + (c->is_regularised() ? 0 : c->velocity_rows());
+            size.position_rows - size.algebraic_variables + size.velocity_rows - 2 * size.bounded_pairs;
         if (dynamic_cast<const contact::EvolvingContact*>(c.get()) == nullptr)
             ++count.others, count.of_others += rows;
         else if (!dae::Model::inactive(*c, x))

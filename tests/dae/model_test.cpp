@@ -94,6 +94,22 @@ TEST_CASE("a constraint without two different existing bodies is rejected", "[da
     CHECK(model.rows() == 3);
 }
 
+TEST_CASE("a constraint with modes that is no contact constraint is rejected", "[dae][model]")
+{
+    struct Latch final : Constraint {
+        using Constraint::Constraint;
+        Size size() const override { return {.position_rows = 1, .may_be_inactive = true}; }
+        void phi(const Arguments&, double* out) const override { *out = 0; }
+        void variation(const Arguments&, Derivatives&) const override {}
+        void gamma(const Arguments&, double* out) const override { *out = 0; }
+    };
+    Model model;
+    model.add(body("rod"));
+    CHECK_THROWS_WITH(model.constrain("latch", std::make_unique<Latch>(ground, 0)),
+                      Contains("constraint 'latch'") && Contains("ContactConstraint"));
+    CHECK(model.general_constraints().empty());
+}
+
 TEST_CASE("the name of a row contains its constraint and its bodies", "[dae][model]")
 {
     Model model;

@@ -56,6 +56,12 @@ void Model::loads(const State& x, lie::Loads& out) const
         out.n_bar[b].setZero();
     }
     for (const auto& f : force) f->add(x, out);
+    if (x.applied_loads.empty()) return;
+    const double* applied = x.applied_loads.data();
+    for (size_t b = 0; b < body.size(); ++b, applied += 6) {
+        out.F[b] += Vec3::Map(applied);
+        out.n_bar[b] += Vec3::Map(applied + 3);
+    }
 }
 
 void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const

@@ -342,6 +342,12 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     return report;
 }
 
+void set_start_accelerations(const Model& model, State& x)
+{
+    lie::Saddle K(model, lie::Metric::mass, start_solver(model));
+    solve_with_internal_states(model, K, x);
+}
+
 void check_dropped_rows(const Model& model, const State& x)
 {
     for (const int k : model.dropped_rows()) {

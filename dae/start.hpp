@@ -49,6 +49,9 @@ struct StartReport {
 /// converge.
 StartReport start(Model& model, State& x, const StartOptions& options = {});
 
+/// Step 4 alone, for a start whose loads have changed: State::applied_loads
+void set_start_accelerations(const Model& model, State& x);
+
 /// Throws lie::NodeFailure "constraint_drift" if the scaled residual of a row that was removed as
 /// redundant exceeds 1e-6 m or rad in x. The row has then become independent of the others, and the computed
 /// motion is not that of the model.

@@ -35,6 +35,10 @@ struct State {
     std::vector<double> internal_state;
     /// State variables of a multi-step scheme: half-step velocities, earlier increments. Empty at a start.
     Eigen::VectorXd history;
+    /// Loads that are set from outside between the steps, in addition to those of the system: F [N, global
+    /// frame, at the centre of mass] and n̄ [N m, body frame] of each body. They are constant during a step.
+    /// Empty: none
+    std::vector<double> applied_loads;
 };
 
 }  // namespace hilda::lie

@@ -44,7 +44,8 @@ public:
     /// The fixed pattern of the constraint rows. Its values are not used.
     virtual const Rows& pattern() const = 0;
 
-    /// F [N, global frame] and n̄ [N m, body frame] in the state x
+    /// F [N, global frame] and n̄ [N m, body frame] in the state x, with x.applied_loads if the system takes
+    /// them
     virtual void loads(const State& x, Loads& out) const = 0;
     /// Φ(r, A, α, t), one component per row; 0 for nonholonomic rows
     virtual void phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const = 0;

@@ -65,6 +65,13 @@ void March::set_internal_states(std::size_t first, std::span<const double> value
     std::copy(values.begin(), values.end(), x.internal_state.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
+void March::set_node(const State& node)
+{
+    const double t = x.t;
+    x = node;
+    x.t = t;
+}
+
 // A sum of h would drift. If 1/h is an integer, node/(1/h) is the double nearest to a decimal such as 0.009;
 // the product node · h is not.
 double March::time(long node) const
@@ -136,7 +143,8 @@ void TrajectoryRecorder::accepted(const State& node, long n, int /*iterations*/)
                               .lambda = node.lambda,
                               .discrete_state = node.discrete_state,
                               .internal_state = node.internal_state,
-                              .history = {}});
+                              .history = {},
+                              .applied_loads = node.applied_loads});
 }
 
 Trajectory march(State x, Integrator& integrator, const TimeGrid& grid, std::span<Observer* const> observers)

@@ -82,6 +82,8 @@ public:
     /// Sets internal states of the node, from index `first` on, for loads that are computed outside of the
     /// system and constant in a step.
     void set_internal_states(std::size_t first, std::span<const double> values);
+    /// Replaces the state of the node, except for its time.
+    void set_node(const State& node);
     long number() const { return n; }
     int iterations_of_last_step() const { return iterations; }
 

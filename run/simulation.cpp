@@ -3,11 +3,19 @@
 
 #include "contact/evolving/unilateral.hpp"
 #include "contact/soft_friction.hpp"
+#include "dae/start.hpp"
+#include "io/archive.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
+#include "lie/solver/saddle.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "run/diagnosis.hpp"
 #include "run/watch/run_check.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <ctime>
 
 namespace hilda::run {
@@ -30,6 +38,7 @@ Simulation::Simulation(SimulationSetup setup)
     if (setup.event_table != nullptr && setup.description != nullptr && !setup.description->events.empty())
         make_events(*setup.description, *setup.event_table, of_caller);
     watch_of_run.emplace(model, setup.start, *stepper, scheme, grid_of_run, action, setup.accept_unstable);
+    pivots.emplace(*stepper);
     progress.emplace(setup.start, *stepper, grid_of_run.h);
     result.setup_seconds = thread_seconds() - begin;
 }
@@ -62,10 +71,123 @@ void Simulation::make_events(const dae::Description& description, RunTables& tab
     events_of_model = std::make_unique<RunEvents>(description, make, table);
 }
 
-void Simulation::resume(const lie::State& node, long number, int iterations)
+void Simulation::resume(const SimulationRecord& from, const std::string& file)
 {
-    progress.emplace(node, *stepper, grid_of_run.h, number, iterations);
+    watch_of_run->restore(from.watch);
+    restore(*stepper, *pivots, from);
+    earlier = lie::Statistics();
+    const lie::Statistics preparation = statistics();
+    earlier = {.steps = from.statistics.steps - preparation.steps,
+               .iterations = from.statistics.iterations - preparation.iterations,
+               .factorizations = from.statistics.factorizations - preparation.factorizations,
+               .refactorizations = from.statistics.refactorizations - preparation.refactorizations};
+    progress.emplace(from.node, *stepper, grid_of_run.h, from.number, from.iterations);
+    if (events_of_model) events_of_model->open(from.events, file);
     last.number = -1;
+}
+
+/// Restores what the integrator stores in addition to the state.
+void Simulation::restore(lie::Integrator& integrator, PivotNode& of_integrator,
+                         const SimulationRecord& from) const
+{
+    of_integrator.restore(from.pivots, grid_of_run.h);
+    if (auto* unilateral = dynamic_cast<contact::UnilateralStep*>(&integrator))
+        unilateral->restore(from.contacts);
+}
+
+SimulationRecord Simulation::record()
+{
+    open_events();
+    SimulationRecord r = record_of_integrator();
+    r.watch = watch_of_run->record();
+    if (events_of_model) r.events = events_of_model->save();
+    return r;
+}
+
+SimulationRecord Simulation::record_of_integrator() const
+{
+    SimulationRecord r;
+    r.node = progress->node();
+    r.number = progress->number();
+    r.iterations = progress->iterations_of_last_step();
+    r.pivots = pivots->node;
+    r.statistics = statistics();
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(stepper.get()))
+        r.contacts = unilateral->history();
+    return r;
+}
+
+void Simulation::transfer(io::Archive& a)
+{
+    SimulationRecord r;
+    if (!a.reads()) r = record();
+    run::transfer(a, r);
+    if (!a.reads()) return;
+    check_fits(r, model, progress->node(), a.name());
+    resume(r, a.name());
+}
+
+void Simulation::set_loads(const lie::Loads& loads)
+{
+    if (ended) refuse("loads cannot be set: the run has ended");
+    if (!scheme.resumes)
+        refuse(scheme.name +
+               " stores past steps outside the state; loads between steps need another integrator");
+    const auto bodies = static_cast<size_t>(model.bodies());
+    if (loads.F.size() != bodies || loads.n_bar.size() != bodies)
+        lie::reject("run::Simulation::set_loads", "F and n_bar need a vector for each body, F has",
+                    static_cast<double>(loads.F.size()));
+    std::vector<double> numbers;
+    for (size_t b = 0; b < bodies; ++b)
+        for (const lie::Vec3* load : {&loads.F[b], &loads.n_bar[b]}) {
+            if (!load->allFinite())
+                throw lie::InvalidInput(
+                    fmt::format("run::Simulation::set_loads: the loads on body '{}' are not finite",
+                                model.body_name(static_cast<int>(b))));
+            numbers.insert(numbers.end(), load->begin(), load->end());
+        }
+    const std::vector<double>& before = progress->node().applied_loads;
+    if (before.empty() && std::all_of(numbers.begin(), numbers.end(), [](double v) { return v == 0; }))
+        return;
+    if (numbers != before) apply(numbers);
+}
+
+void Simulation::apply(const std::vector<double>& loads)
+{
+    lie::State x = progress->node();
+    x.applied_loads = loads;
+    if (progress->number() == 0) {
+        dae::set_start_accelerations(model, x);
+    } else if (!stepper->is_staggered() && model.bounded_pairs().empty()) {
+        lie::Saddle K(model);
+        lie::solve_accelerations(model, K, x);
+    }
+    // The solution has a kink here. The internal steps of an adaptive scheme end beyond the node.
+    if (stepper->chooses_internal_steps()) x.history.resize(0);
+    progress->set_node(x);
+}
+
+lie::State Simulation::complete_node() const
+{
+    if (at_event || !stepper->is_staggered() || progress->number() == 0) return state();
+    class Copy final : public lie::Observer {
+    public:
+        void accepted(const lie::State& node, long /*n*/, int /*iterations*/) override { x = node; }
+        lie::State x;
+    } copy;
+    const auto integrator = contact::make_integrator(model, scheme, settings);
+    PivotNode of_integrator(*integrator);
+    restore(*integrator, of_integrator, record_of_integrator());
+    lie::Observer* observers[] = {&copy};
+    lie::March(progress->node(), *integrator, grid_of_run.h, progress->number()).finish(observers);
+    return copy.x;
+}
+
+void Simulation::refuse(const std::string& why) const { throw io::UsageError("run: " + why); }
+
+void Simulation::open_events()
+{
+    if (events_of_model && !events_of_model->is_open()) events_of_model->open("", "");
 }
 
 /// Lists the observers, and opens the table of events if the caller has not.
@@ -74,25 +196,46 @@ void Simulation::begin()
     all.clear();
     if (events_of_model) all.push_back(events_of_model.get());
     all.push_back(&last);
+    all.push_back(&*pivots);
     all.insert(all.end(), observers.begin(), observers.end());
     all.push_back(&*watch_of_run);
     all.insert(all.end(), checked.begin(), checked.end());
-    if (events_of_model && !events_of_model->is_open()) events_of_model->open("", "");
+    open_events();
 }
 
 bool Simulation::step()
 {
+    if (result.failed())
+        refuse(fmt::format("the simulation has failed at t = {:.6g} s ({}); it cannot continue", result.t,
+                           result.status));
     if (ended || progress->number() >= grid_of_run.steps) return false;
     if (all.empty()) begin();
+    result.status = "ok";
     try {
         progress->advance(all);
+        return true;
+    } catch (const lie::Interrupted&) {  // the current node is unchanged
+        throw;
     } catch (const StoppedByEvent& event) {
         counted = false, begin_seconds = thread_seconds();
         count();
         ended_at(event);
-        return false;
+    } catch (const io::NumericalFailure& failure) {
+        counted = false, begin_seconds = thread_seconds();
+        count();
+        failed(failure);
+        if (result.failed())
+            throw io::NumericalFailure(result.status, result.text());
     }
-    return true;
+    return false;
+}
+
+lie::Statistics Simulation::statistics() const
+{
+    lie::Statistics sum = stepper->statistics();
+    sum.steps += earlier.steps, sum.iterations += earlier.iterations;
+    sum.factorizations += earlier.factorizations, sum.refactorizations += earlier.refactorizations;
+    return sum;
 }
 
 /// Counters and times up to the current node. The additional step of finish() is not a step of the run.
@@ -100,7 +243,7 @@ void Simulation::count()
 {
     if (counted) return;
     counted = true;
-    result.statistics = stepper->statistics();
+    result.statistics = statistics();
     result.t = progress->node().t;
     result.step_seconds += thread_seconds() - begin_seconds;
 }
@@ -157,6 +300,7 @@ void Simulation::ended_at(const StoppedByEvent& event)
     result.status = "stopped";
     result.stopped_by = event.event;
     result.t = event.x.t;
+    at_event = event.x;
     grid_of_run.steps = progress->number();
     try {
         for (lie::Observer* observer : observers)

@@ -17,6 +17,8 @@
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
 #include "run/events/run_events.hpp"
+#include "run/recording/pivot_node.hpp"
+#include "run/recording/simulation_record.hpp"
 #include "run/watch/watch.hpp"
 
 #include <functional>
@@ -58,11 +60,13 @@ struct Outcome {
     std::string cause;       ///< of a failure: what the scheme or the check reports, without time and step
     std::string stopped_by;  ///< name of the event that ended the run
     double t = 0;            ///< of the last complete node, or of the event [s]
-    lie::Statistics statistics = {};  ///< of the steps up to the last node
+    lie::Statistics statistics = {};  ///< of all steps up to the last node, also of those before a resumption
     /// CPU time of this thread [s], of the construction and of the steps
     double setup_seconds = 0, step_seconds = 0;
 
     bool failed() const { return status != "ok" && status != "stopped" && status != "interrupted"; }
+    /// The message and the detail of a failure
+    std::string text() const { return message + (detail.empty() ? "" : "; " + detail); }
     /// Throws lie::Interrupted or io::NumericalFailure, with the cause, if the run did not reach its end.
     void throw_failure() const;
 };
@@ -107,9 +111,24 @@ public:
     /// Adds an observer of the nodes that passed the watch.
     void observe_checked(lie::Observer& observer) { checked.push_back(&observer), all.clear(); }
 
-    /// Continues a run at this node, before run() or step(). The caller restores the watch, the pivots and
-    /// the contact events of the integrator, and opens events(): see Recorder::open().
-    void resume(const lie::State& node, long number, int iterations);
+    /// Continues a run from its record, before run() or step(). `file` is for messages. io::IoError.
+    void resume(const SimulationRecord& from, const std::string& file);
+    /// What a run that continues from the current node needs. Synchronises the table of events with the disk.
+    SimulationRecord record();
+    /// Writes record(), or reads a record of the same model, scheme, settings and step, and resumes.
+    /// io::IoError if the record does not fit the model.
+    void transfer(io::Archive& a);
+
+    /// Sets loads that act in addition to those of the model, from the current node on until they are set
+    /// again: State::applied_loads.
+    ///
+    /// At the start, and at each node of a scheme that is not staggered, the accelerations and multipliers of
+    /// the node follow the loads; those of a model with regularised rows at the start only. A scheme with
+    /// adaptive steps restarts at the node.
+    ///
+    /// Throws lie::InvalidInput if the loads are not finite or not those of the bodies, and io::UsageError if
+    /// the run has ended, or for a scheme that stores past steps outside the state.
+    void set_loads(const lie::Loads& loads);
 
     /// Computes the steps that are left, and passes the nodes to the observers, each once. After an
     /// interruption it can be called again; after another end it returns the same outcome.
@@ -119,18 +138,31 @@ public:
     /// Watch::Action::record the node at the start of a failed step is not passed to the observers.
     const Outcome& run(StepLoop* loop = nullptr);
     /// Computes one step. Returns false, without a step, at the end of the grid or after an event that ends
-    /// the run. Throws as lie::March::advance(). run() then computes the steps that are left, and passes the
-    /// last node.
+    /// the run. run() then computes the steps that are left, and passes the last node.
+    ///
+    /// A failure is recorded as by run(), and thrown as io::NumericalFailure with the message and the detail
+    /// of the outcome. Then, a further call throws io::UsageError. lie::Interrupted and exceptions of user
+    /// code leave the node unchanged.
     bool step();
     const Outcome& outcome() const { return result; }
+    /// Whether the run is complete, was stopped, or has failed
+    bool has_ended() const { return ended; }
 
-    const lie::State& state() const { return progress->node(); }
+    /// The current node, or the state of the event that ended the run. The accelerations and multipliers of a
+    /// node of a staggered scheme (lie::Integrator::is_staggered()) are those of the step that ends there.
+    const lie::State& state() const { return at_event ? *at_event : progress->node(); }
+    /// The same state as an observer will receive it if the loads remain: velocities, accelerations and
+    /// multipliers are those of its time. A staggered scheme computes an additional step with a new
+    /// integrator.
+    lie::State complete_node() const;
     long number() const { return progress->number(); }
     /// The grid; after an event that ends the run its end is there
     const lie::TimeGrid& grid() const { return grid_of_run; }
     lie::Integrator& integrator() { return *stepper; }
     Watch& watch() { return *watch_of_run; }
     RunEvents* events() { return events_of_model.get(); }  ///< nullptr if the run has none
+    /// Counters up to the current node, also of the steps before a resumption
+    lie::Statistics statistics() const;
     const lie::March& march() const { return *progress; }
     /// Findings of the watch, and constraints that nearly lost rank
     std::vector<Finding> findings() const;
@@ -142,6 +174,11 @@ private:
     /// of_caller: the integrator is not that of the scheme
     void make_events(const dae::Description& description, RunTables& table, bool of_caller);
     void begin();
+    void open_events();
+    [[noreturn]] void refuse(const std::string& why) const;
+    void apply(const std::vector<double>& loads);
+    SimulationRecord record_of_integrator() const;
+    void restore(lie::Integrator& integrator, PivotNode& pivots, const SimulationRecord& from) const;
     void count();
     void march_to_end(StepLoop* loop);
     void ended_at(const StoppedByEvent& event);
@@ -157,7 +194,10 @@ private:
     std::vector<Finding> found;
     std::unique_ptr<RunEvents> events_of_model;
     std::optional<Watch> watch_of_run;
+    std::optional<PivotNode> pivots;
+    lie::Statistics earlier;  ///< of the steps before a resumption, minus those of its preparation
     std::optional<lie::March> progress;
+    std::optional<lie::State> at_event;  ///< the last state, if an event ended the run
     std::vector<lie::Observer*> observers, checked;
     std::vector<lie::Observer*> all;  ///< in the order of their calls; empty: to be listed by begin()
     Outcome result;

@@ -94,8 +94,8 @@ RunResult SingleRun::execute()
                        .warn = [this](const std::string& what) { warn(what); },
                        .tables = tables,
                        .coupling = options.coupling},
-                      simulation.integrator(), simulation.watch());
-    for (lie::Observer* observer : recorder.observers()) simulation.observe(*observer);
+                      simulation.integrator());
+    simulation.observe(recorder);
     std::optional<RefinedRuns> refined;
     if (options.error) {
         refined.emplace(*description.model, description.x, scheme, integrator_settings, grid);
@@ -302,16 +302,12 @@ private:
 void SingleRun::march(Simulation& simulation, Recorder& recorder)
 {
     if (from) {
-        simulation.resume(from->node, from->number, from->iterations);
+        simulation.resume(*from, from_file);
         earlier_seconds = from->wall_seconds;
         result.resumed_at = from->number;
     }
     recorder.open(from);
     RunEvents* const events = simulation.events();
-    if (events != nullptr) {
-        const bool continues = from && from->sinks.contains("events");
-        events->open(continues ? from->sinks.at("events") : "", from_file);
-    }
     if (options.coupling != nullptr)
         options.coupling->begin(simulation.march(), [this](const std::string& what) { add_warning(what); });
     begin = Clock::now();
@@ -376,7 +372,7 @@ void SingleRun::check_contacts()
 void SingleRun::ended(Simulation& simulation, Recorder& recorder)
 {
     const Outcome& outcome = simulation.outcome();
-    result.statistics = recorder.statistics(outcome.statistics);
+    result.statistics = outcome.statistics;
     result.t = outcome.t;
     result.stopped_by = outcome.stopped_by;
     if (!(result.wall_seconds > 0)) result.wall_seconds = earlier_seconds + seconds(Clock::now() - begin);
@@ -391,7 +387,7 @@ void SingleRun::ended(Simulation& simulation, Recorder& recorder)
     } else if (outcome.failed()) {
         result.status = outcome.status;
         result.exit_code = io::exit_code::numerical_failure;
-        result.message = outcome.message + (outcome.detail.empty() ? "" : "; " + outcome.detail);
+        result.message = outcome.text();
         io::message("hilda: error[" + outcome.status + "]: " + outcome.message + '\n');
         if (!outcome.detail.empty()) io::message("  " + outcome.detail + '\n');
     }
@@ -399,8 +395,7 @@ void SingleRun::ended(Simulation& simulation, Recorder& recorder)
 
 std::string SingleRun::checkpoint(Simulation& simulation, Recorder& recorder) const
 {
-    Checkpoint c = recorder.checkpoint(simulation.march());
-    if (simulation.events() != nullptr) c.sinks["events"] = simulation.events()->save();
+    Checkpoint c = recorder.checkpoint(simulation.record());
     c.settings = settings;
     c.end = result.end;
     c.interval = grid.interval;

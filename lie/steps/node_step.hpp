@@ -47,7 +47,8 @@ private:
              .lambda = {},
              .discrete_state = {},
              .internal_state = {},
-             .history = {}};
+             .history = {},
+             .applied_loads = {}};
 };
 
 }  // namespace hilda::lie

@@ -11,6 +11,7 @@ void copy(const State& from, State& to)
     to.lambda = from.lambda;
     to.discrete_state = from.discrete_state;
     to.internal_state = from.internal_state;
+    to.applied_loads = from.applied_loads;
 }
 
 }  // namespace hilda::lie

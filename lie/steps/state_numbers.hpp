@@ -23,7 +23,7 @@ void transfer_integer(Integer& value, const Block& block)
     value = static_cast<Integer>(number);
 }
 
-/// Calls block(numbers, count) for all numbers of x but its time and its history.
+/// Calls block(numbers, count) for all numbers of x but its time, its history and its applied loads.
 template <class Block>
 void transfer(State& x, const Block& block)
 {

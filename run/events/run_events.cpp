@@ -5,7 +5,7 @@
 #include "io/archive.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
-#include "run/recording/checkpoint.hpp"
+#include "run/recording/simulation_record.hpp"
 
 namespace hilda::run {
 

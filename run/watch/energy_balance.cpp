@@ -63,6 +63,7 @@ void EnergyBalance::add_work(const lie::State& x)
 {
     const double dt = x.t - record.t;
     record.t = x.t;
+    if (!x.applied_loads.empty()) record.with_applied_loads = 1;
     if (!not_passive.empty()) {
         record.loads.add(power_of_loads(x), dt);
         if (record.evaluations == 0) record.potential_start = record.potential;

@@ -8,6 +8,8 @@
 ///
 ///     W = ∫ (Σ P_f - λ · ν) dt + Σ (V_f - V_f(0))          over the forces f that are not passive
 ///
+/// State::applied_loads are not part of W: a run with them is not passive, and E - W has no finding.
+///
 /// D, the energy dissipated, never decreases in the exact solution: E - W never rises. The rise above its
 /// lowest value so far is therefore an error of the integration, or of the model.
 ///
@@ -43,6 +45,7 @@ struct EnergyRecord {
     double t = 0;                               ///< of the last node [s]
     NodeIntegral loads, drivers;
     long evaluations = 0;
+    long with_applied_loads = 0;  ///< 1: a node has had State::applied_loads
 
     double work_of_loads() const { return loads.value() + potential - potential_start; }  ///< [J]
     double work_of_drivers() const { return drivers.value(); }                            ///< [J]
@@ -62,8 +65,12 @@ public:
     /// largest kinetic energy of a start from rest is that of a few steps.
     void evaluate(const lie::State& x, long n);
 
-    /// All forces are passive, and no driver has moved or moves within about 2 s of the start: W = 0
-    bool is_passive() const { return not_passive.empty() && !has_drivers(); }
+    /// All forces are passive, there were no applied loads, and no driver has moved or moves within about 2 s
+    /// of the start: W = 0
+    bool is_passive() const
+    {
+        return not_passive.empty() && record.with_applied_loads == 0 && !has_drivers();
+    }
     /// Rounding errors and errors of the constraints in E [J]
     double floor() const;
     /// Largest rise of E - W that is not above `part` times the largest kinetic energy plus rounding errors

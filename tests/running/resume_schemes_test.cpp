@@ -6,7 +6,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "run/recording/checkpoint.hpp"
-#include "run/recording/recorder.hpp"
+#include "run/recording/pivot_node.hpp"
 #include "studies/framework/problem.hpp"
 #include "tests/support/bristle.hpp"
 

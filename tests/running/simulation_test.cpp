@@ -5,8 +5,11 @@
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
 #include "dae/start.hpp"
+#include "io/archive.hpp"
 #include "io/error.hpp"
 #include "lie/schemes.hpp"
+#include "run/tables/run_table.hpp"
+#include "studies/framework/problem.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -238,4 +241,286 @@ TEST_CASE("an exception that is no failure of the simulation is thrown on, with 
     CHECK_THROWS_AS(simulation.run(), io::IoError);
     CHECK_FALSE(simulation.outcome().failed());
     CHECK(simulation.outcome().t == Approx(3e-4));
+}
+
+namespace {
+
+/// The table of events in memory
+class Tables final : public run::RunTables {
+public:
+    std::unique_ptr<run::RunTable> table(const std::string& name,
+                                         std::vector<run::TableColumn> columns) override
+    {
+        CHECK(name == "events");
+        CHECK(columns.size() > 3);
+        return std::make_unique<Table>(times);
+    }
+    std::vector<double> times;  ///< of the rows [s]
+
+private:
+    class Table final : public run::RunTable {
+    public:
+        explicit Table(std::vector<double>& times) : times(times) {}
+        void open() override {}
+        void row(const std::vector<double>& values) override { times.push_back(values[0]); }
+        void sync() override {}
+        void transfer(io::Archive& a) override { a.list(times); }
+        void close() override {}
+        std::vector<std::string> files() const override { return {}; }
+        std::string label() const override { return "events"; }
+
+    private:
+        std::vector<double>& times;
+    };
+};
+
+/// A ball that is thrown upwards with 8 m/s at g = 10 m/s², with events at the top and 2.25 m below the start
+dae::Description thrown_ball()
+{
+    dae::Description d =
+        dae::read_model(R"({"hilda_model": 1, "name": "ball", "gravity": [0, 0, -10], "end": 2,
+  "bodies": [{"name": "ball", "mass": 2, "inertia": [1, 2, 3], "r": [0, 0, 0], "r_dot": [1, 0, 8], "omega": [0, 1, 3]}],
+  "events": [{"name": "top", "value": "ball.vz"},
+             {"name": "ground", "value": "ball.rz + 2.25", "direction": "falling", "action": "stop"}]})",
+                        "ball.json");
+    dae::start(d);
+    return d;
+}
+
+bool equal_states(const lie::State& a, const lie::State& b)
+{
+    bool all = a.t == b.t && a.alpha == b.alpha && a.lambda == b.lambda &&
+               a.discrete_state == b.discrete_state && a.internal_state == b.internal_state &&
+               a.applied_loads == b.applied_loads;
+    for (size_t k = 0; k < a.body.size(); ++k) {
+        const lie::Motion &x = a.body[k], &y = b.body[k];
+        all = all && x.r == y.r && x.rdot == y.rdot && x.rddot == y.rddot && x.A == y.A &&
+              x.omega_bar == y.omega_bar && x.omegadot_bar == y.omegadot_bar;
+    }
+    return all;
+}
+
+lie::Loads load(int bodies, const lie::Vec3& F, const lie::Vec3& n_bar)
+{
+    lie::Loads all(bodies);
+    all.F.back() = F, all.n_bar.back() = n_bar;
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("an event with the action stop ends a simulation, whether it runs or is stepped",
+          "[run][simulation]")
+{
+    const dae::Description ball = thrown_ball();
+    const double end = 0.8 + std::sqrt(0.64 + 0.45);
+    for (const bool in_steps : {false, true}) {
+        Tables tables;
+        Simulation simulation({.model = *ball.model,
+                               .start = ball.x,
+                               .scheme = lie::scheme("rA-rkmk-4"),
+                               .grid = lie::TimeGrid::over(2, 0.03),
+                               .description = &ball,
+                               .event_table = &tables});
+        Nodes nodes;
+        simulation.observe(nodes);
+        if (in_steps)
+            while (simulation.step()) {
+            }
+        const Outcome& outcome = simulation.run();
+        CAPTURE(in_steps);
+        CHECK(outcome.status == "stopped");
+        CHECK(outcome.stopped_by == "ground");
+        CHECK(simulation.has_ended());
+        CHECK(outcome.t == Approx(end).epsilon(1e-12));
+        CHECK(simulation.state().t == outcome.t);
+        CHECK(simulation.state().body[0].r.z() == Approx(-2.25).epsilon(1e-12));
+        CHECK(nodes.t == outcome.t);  // the event is the last node that the observers receive
+        REQUIRE(tables.times.size() == 2);
+        CHECK(tables.times[0] == Approx(0.8).epsilon(1e-12));
+        CHECK_FALSE(simulation.step());
+        CHECK_THROWS_AS(simulation.set_loads(lie::Loads(1)), io::UsageError);
+    }
+}
+
+TEST_CASE("a simulation that continues from a record has the digits, counters and events of a whole one",
+          "[run][simulation]")
+{
+    const dae::Description ball = thrown_ball();
+    const auto name =
+        GENERATE(as<std::string>(), "rA-half-1-momentum", "rA-rkmk-4", "rA-genalpha", "rA-dop853");
+    const lie::Scheme& scheme =
+        name == "rA-dop853" ? lie::scheme(name).with_adaptive_steps() : lie::scheme(name);
+    CAPTURE(name);
+    const auto made = [&](Tables& tables) {
+        return std::make_unique<Simulation>(run::SimulationSetup{.model = *ball.model,
+                                                                 .start = ball.x,
+                                                                 .scheme = scheme,
+                                                                 .grid = lie::TimeGrid::over(1.6, 0.02),
+                                                                 .description = &ball,
+                                                                 .event_table = &tables});
+    };
+    // A force and a torque from 0.4 s to 0.6 s
+    const auto step = [](Simulation& simulation) {
+        if (simulation.number() == 20) simulation.set_loads(load(1, {4, 0, 1}, {0, 0.5, 0}));
+        if (simulation.number() == 30) simulation.set_loads(lie::Loads(1));
+        REQUIRE(simulation.step());
+    };
+    Tables of_whole, of_first, of_second;
+    const auto whole = made(of_whole), first = made(of_first), second = made(of_second);
+    while (whole->number() < 70) step(*whole);
+    while (first->number() < 25) step(*first);
+    io::Archive written;
+    first->transfer(written);
+    const std::string bytes = written.bytes();
+    io::Archive read(bytes, "record");
+    second->transfer(read);
+    read.end();
+    CHECK(equal_states(second->state(), first->state()));
+    CHECK(second->state().applied_loads.size() == 6);
+    while (second->number() < 70) step(*second);
+    CHECK(equal_states(second->state(), whole->state()));
+    CHECK(second->statistics().iterations == whole->statistics().iterations);
+    CHECK(second->statistics().steps == whole->statistics().steps);
+    CHECK(of_second.times == of_whole.times);
+    CHECK(of_whole.times.size() == 1);
+    CHECK(second->run().statistics.factorizations == whole->run().statistics.factorizations);
+    CHECK(second->outcome().statistics.steps == whole->outcome().statistics.steps);
+
+    io::Archive of_another(bytes, "record");
+    dae::Model two;
+    two.gravity.setZero();
+    for (int b = 0; b < 2; ++b) two.add({.name = "mass " + std::to_string(b), .m = 1, .J_bar = lie::Mat3::Identity()});
+    lie::State x;
+    x.body.resize(2);
+    dae::start(two, x);
+    Simulation other({.model = two, .start = x, .scheme = scheme, .grid = lie::TimeGrid::over(1.6, 0.02)});
+    CHECK_THROWS_AS(other.transfer(of_another), io::IoError);
+}
+
+TEST_CASE("a watch that records changes neither the nodes nor the end of a run", "[run][simulation]")
+{
+    // h ω is 2.02: the energy of leapfrog grows without bound. A watch that stops ends the run.
+    const Oscillator of;
+    const lie::Scheme& scheme = lie::scheme("rA-half-1-momentum");
+    const auto grid = lie::TimeGrid::over(0.202, 2.02e-3);
+    const auto made = [&](run::Watch::Action action) {
+        return std::make_unique<Simulation>(run::SimulationSetup{.model = of.model,
+                                                                 .start = of.x,
+                                                                 .scheme = scheme,
+                                                                 .grid = grid,
+                                                                 .watch = action,
+                                                                 .accept_unstable = true});
+    };
+    const auto stopping = made(run::Watch::Action::stop), recording = made(run::Watch::Action::record);
+    CHECK(stopping->run().status == "energy_created");
+    Nodes nodes;
+    recording->observe(nodes);
+    CHECK(recording->run().status == "ok");
+    REQUIRE(nodes.number.size() == static_cast<size_t>(grid.steps + 1));
+    std::vector<std::string> names;
+    for (const run::Finding& found : recording->findings()) names.push_back(found.name);
+    CHECK(names == std::vector<std::string>{"unstable_step", "energy_rises"});
+    const auto integrator = scheme.make(of.model, {});
+    const lie::Trajectory marched = lie::march(of.x, *integrator, grid);
+    CHECK(recording->state().body[0].r == marched.row.back().body[0].r);
+}
+
+TEST_CASE("loads that are set at the start give the digits of a constant force of the model",
+          "[run][simulation]")
+{
+    const lie::Vec3 F(30, 10, -200), n_bar(20, -10, 3);
+    class Constant final : public dae::Force {
+    public:
+        Constant(const lie::Vec3& F, const lie::Vec3& n_bar) : F(F), n_bar(n_bar) { name = "constant"; }
+        void add(const lie::State& /*x*/, lie::Loads& out) const override
+        {
+            out.F.back() += F, out.n_bar.back() += n_bar;
+        }
+        int last_body() const override { return 1; }
+
+    private:
+        const lie::Vec3 F, n_bar;
+    };
+    const auto read = [] {
+        return dae::read_model(studies::problem("double_pendulum_moving").model, "double_pendulum_moving");
+    };
+    dae::Description with_force = read(), without = read();
+    with_force.model->load(std::make_unique<Constant>(F, n_bar));
+    dae::start(with_force), dae::start(without);
+    int compared = 0;
+    for (const lie::Scheme& listed : lie::schemes())
+        for (const lie::Scheme* scheme : {&listed, &listed.with_adaptive_steps()}) {
+            CAPTURE(scheme->name, scheme->adaptive);
+            const auto made = [&](const dae::Description& d) {
+                return std::make_unique<Simulation>(
+                    run::SimulationSetup{.model = *d.model,
+                                         .start = d.x,
+                                         .scheme = *scheme,
+                                         .grid = lie::TimeGrid::over(0.1, 2e-3),
+                                         .settings = {.rtol = 1e-8}});
+            };
+            const auto set = made(without), of_model = made(with_force);
+            if (!scheme->resumes) {
+                CHECK_THROWS_AS(set->set_loads(load(2, F, n_bar)), io::UsageError);
+                continue;
+            }
+            set->set_loads(load(2, F, n_bar));
+            while (set->number() < 50) {
+                REQUIRE(set->step());
+                REQUIRE(of_model->step());
+            }
+            lie::State without_loads = set->state();
+            without_loads.applied_loads.clear();
+            CHECK(equal_states(without_loads, of_model->state()));
+            CHECK(set->findings().empty());
+            ++compared;
+        }
+    CHECK(compared > 20);
+}
+
+TEST_CASE("the additional step of complete_node gives what an observer receives, and changes nothing",
+          "[run][simulation]")
+{
+    class Copy final : public lie::Observer {
+    public:
+        void accepted(const lie::State& x, long /*n*/, int /*iterations*/) override { node = x; }
+        lie::State node;
+    } last;
+    const dae::Description ball = thrown_ball();
+    const auto made = [&] {
+        return std::make_unique<Simulation>(run::SimulationSetup{.model = *ball.model,
+                                                                 .start = ball.x,
+                                                                 .scheme = lie::scheme("rA-half-1-momentum"),
+                                                                 .grid = lie::TimeGrid::over(1, 0.01)});
+    };
+    const auto asked = made(), other = made();
+    asked->observe(last);
+    for (int n = 0; n < 50; ++n) {
+        const lie::State complete = asked->complete_node();
+        REQUIRE(asked->step());
+        REQUIRE(other->step());
+        REQUIRE(equal_states(complete, last.node));
+    }
+    CHECK(equal_states(asked->state(), other->state()));
+}
+
+TEST_CASE("a step that fails is thrown with its time and scheme, and the simulation cannot continue",
+          "[run][simulation]")
+{
+    const Oscillator of;
+    Simulation simulation({.model = of.model,
+                           .start = of.x,
+                           .scheme = lie::scheme("rA-half-1-kick"),
+                           .grid = lie::TimeGrid::over(0.1, 1e-4)});
+    Nodes failing(7);
+    simulation.observe_checked(failing);
+    while (simulation.number() < 7) REQUIRE(simulation.step());
+    CHECK_THROWS_WITH(simulation.step(), Catch::Contains("0.0007") && Catch::Contains("rA-half-1-kick") &&
+                                             Catch::Contains("the test asked for it"));
+    CHECK(simulation.outcome().status == "planned");
+    CHECK(simulation.number() == 7);
+    CHECK_THROWS_WITH(simulation.step(),
+                      Catch::Contains("the simulation has failed at t = 0.0007 s (planned)"));
+    CHECK(simulation.run().status == "planned");
 }

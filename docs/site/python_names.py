@@ -7,10 +7,10 @@ import types
 from pages import write
 
 GROUPS = (  # page, title, the modules whose names it has
-    ("models", "Models and runs", ("hilda.model", "hilda.result", "hilda.surface", "hilda.stored", "hilda.cosimulation")),
+    ("models", "Models and runs", ("hilda.model", "hilda.result", "hilda.simulation", "hilda.surface", "hilda.stored", "hilda.cosimulation")),
     ("integrators", "Integrators", ("hilda.integrator", "hilda._hilda")),
     ("studies", "Studies", ("hilda.orders", "hilda.work", "hilda.parameters", "hilda.fitting")),
-    ("errors", "Errors", ("hilda.errors",)),
+    ("errors", "Errors and warnings", ("hilda.errors",)),
     ("grains", "Grains", ("hilda_granular.world", "hilda_granular.boundary", "hilda_granular.results")),
     ("grains-errors", "Errors of grains", ("hilda_granular.errors",)),
 )

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/bindings/events.hpp"
 
-#include "io/error.hpp"
+#include "io/archive.hpp"
 
 #include <pybind11/numpy.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 class Table final : public run::RunTable {
 public:
-    explicit Table(std::vector<double>& to) : to(to) {}
+    Table(std::vector<double>& to, size_t columns) : to(to), columns(columns) {}
 
     void open() override {}
     void row(const std::vector<double>& values) override
@@ -23,9 +23,10 @@ public:
         to.insert(to.end(), values.begin(), values.end());
     }
     void sync() override {}
-    void transfer(io::Archive& /*a*/) override
+    void transfer(io::Archive& a) override
     {
-        throw io::NotAvailable("a run in Python cannot be resumed");
+        a.list(to);
+        a.check(to.size() % columns == 0, "incomplete row of an event");
     }
     void close() override {}
     std::vector<std::string> files() const override { return {}; }
@@ -33,6 +34,7 @@ public:
 
 private:
     std::vector<double>& to;
+    const size_t columns;
 };
 
 }  // namespace
@@ -41,7 +43,7 @@ std::unique_ptr<run::RunTable> EventTables::table(const std::string& /*name*/,
                                                   std::vector<run::TableColumn> all)
 {
     columns = all.size();
-    return std::make_unique<Table>(values);
+    return std::make_unique<Table>(values, columns);
 }
 
 py::dict EventTables::arrays(size_t bodies) const

@@ -54,6 +54,7 @@ void add_constraints(ModelObject& model, const Constraints& constraints)
             std::make_unique<PythonConstraint>(number_of(*of.model, name, i), number_of(*of.model, name, j),
                                                rows, PythonConstraint::Functions{phi, variation, nu, gamma});
         model.functions.push_back(constraint.get());
+        model.names_of_functions.push_back(name);
         of.model->constrain(name, std::move(constraint));
     }
 }
@@ -67,6 +68,9 @@ ModelPointer started(const Read& read, const Parts& parts, bool fix_initial)
         const SurfacesOfModel surfaces(parts.surfaces);
         model->description = read();
         for (const auto& surface : surfaces.made) model->functions.push_back(surface.get());
+        for (const py::object& surface : parts.surfaces)
+            model->names_of_functions.push_back(
+                py::str(py::type::of(surface).attr("__name__")).cast<std::string>());
     }
     dae::Model& of = *model->description.model;
     add_constraints(*model, parts.constraints);
@@ -74,6 +78,7 @@ ModelPointer started(const Read& read, const Parts& parts, bool fix_initial)
     for (const auto& [name, function, potential] : forces) {
         auto force = std::make_unique<PythonForce>(name, function, potential, of.bodies());
         model->functions.push_back(force.get());
+        model->names_of_functions.push_back(name);
         of.load(std::move(force));
     }
     model->start = dae::start(model->description, {.fix_initial = fix_initial});

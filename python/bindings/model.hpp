@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace hilda::python {
@@ -21,7 +22,8 @@ class ModelFunctions;
 struct ModelObject {
     dae::Description description;
     dae::StartReport start;
-    std::vector<ModelFunctions*> functions;  ///< of the parts of the model that are written in Python
+    std::vector<ModelFunctions*> functions;       ///< of the parts of the model that are written in Python
+    std::vector<std::string> names_of_functions;  ///< of forces, constraints and classes of surfaces
 };
 using ModelPointer = std::shared_ptr<ModelObject>;
 

@@ -7,6 +7,7 @@
 #include "python/bindings/fit.hpp"
 #include "python/bindings/model.hpp"
 #include "python/bindings/run.hpp"
+#include "python/bindings/simulation.hpp"
 #include "python/bindings/state.hpp"
 #include "python/bindings/system.hpp"
 
@@ -19,6 +20,7 @@ PYBIND11_MODULE(_hilda, m)
     define_model(m);
     define_system(m);
     define_run(m);
+    define_simulation(m);
     define_fit(m);
     define_cosim(m);
 }

@@ -3,40 +3,23 @@
 
 #include "io/error.hpp"
 #include "lie/integrator.hpp"
-#include "lie/schemes.hpp"
-#include "lie/settings.hpp"
 #include "python/bindings/errors.hpp"
-#include "python/bindings/events.hpp"
-#include "python/bindings/integrator.hpp"
-#include "python/bindings/model.hpp"
-#include "python/bindings/settings.hpp"
+#include "python/bindings/model_run.hpp"
 #include "python/bindings/signals.hpp"
 #include "python/bindings/state.hpp"
 #include "run/columns/output_columns.hpp"
 #include "run/recording/setting_options.hpp"
-#include "run/simulation.hpp"
 #include "run/watch/run_check.hpp"
-#include "studies/framework/study.hpp"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 
 namespace hilda::python {
 
 namespace {
-
-struct Options {
-    py::object integrator;  ///< the name of a scheme, or an object of hilda.Integrator
-    std::optional<double> end, step, interval;
-    std::map<std::string, std::string> settings;  ///< values of run::setting_options(), without the dashes
-    bool reactions, force;
-    std::vector<std::string> columns;  ///< names of columns, or of the groups forces, contacts and outputs
-    py::object observer;
-};
 
 using Array = py::array_t<double>;
 
@@ -205,8 +188,7 @@ Ended march(run::Simulation& simulation, const PythonObserver* observer)
     }
     run::Outcome& out = ended.outcome = simulation.outcome();
     if (out.failed())
-        ended.error = numerical_failure(lie::NumericalFailure(out.status, out.cause),
-                                        out.message + (out.detail.empty() ? "" : "; " + out.detail));
+        ended.error = numerical_failure(lie::NumericalFailure(out.status, out.cause), out.text());
     else if (!raised.empty())
         out.status = raised;
     else if (out.status == "ok" && observer != nullptr && observer->stopped)
@@ -216,16 +198,6 @@ Ended march(run::Simulation& simulation, const PythonObserver* observer)
         ended.error = with_traceback(*signals.error());
     }
     return ended;
-}
-
-py::dict counters(const lie::Statistics& of)
-{
-    py::dict all;
-    all["steps"] = of.steps;
-    all["iterations"] = of.iterations;
-    all["factorizations"] = of.factorizations;
-    all["refactorizations"] = of.refactorizations;
-    return all;
 }
 
 /// The names, with those of a group in place of its name
@@ -247,58 +219,26 @@ std::vector<std::string> column_names(const dae::Description& of, const std::vec
     return all;
 }
 
-std::vector<std::string> event_names(const dae::Description& of)
-{
-    std::vector<std::string> all;
-    for (const dae::Event& event : of.events) all.push_back(event.value->name);
-    return all;
-}
-
-py::dict run(const ModelPointer& model, const Options& options)
+py::dict run(const ModelPointer& model, const RunArguments& arguments, bool reactions,
+             const std::vector<std::string>& groups, const py::object& function)
 {
     const dae::Description& of = model->description;
-    const dae::Model& system = *of.model;
-    const bool in_python = !py::isinstance<py::str>(options.integrator);
-    const lie::Scheme own = in_python ? scheme_of(options.integrator) : lie::Scheme();
-    const lie::Scheme* scheme = in_python ? &own : &lie::scheme(options.integrator.cast<std::string>());
-    if (!options.step) scheme = &scheme->with_adaptive_steps();
-    const double end = options.end.value_or(of.end);
-    lie::Settings settings =
-        settings_of("run", *scheme, options.settings, options.step.has_value(), options.interval);
-    settings.stop = &Signals::raised_in_run;
-    const std::vector<std::string> columns = column_names(of, options.columns);
-    EventTables event_tables;
-    run::Simulation simulation(
-        {.model = system,
-         .start = of.x,
-         .scheme = *scheme,
-         .grid = run::time_grid(*scheme, end, options.step, options.interval),
-         .settings = settings,
-         .accept_unstable = options.force,
-         .end = end,
-         .interval = options.interval.value_or(0),
-         .dropped_rows = model->start.dropped,
-         .description = &of,
-         .event_table = &event_tables,
-         .integrator = in_python ? std::make_unique<PythonIntegrator>(options.integrator, system) : nullptr});
-    std::vector<std::string> warnings;
-    for (const run::Finding& found : simulation.warnings()) warnings.push_back(found.text);
-    Rows rows(of, simulation.grid(), options.reactions, columns);
+    const std::vector<std::string> columns = column_names(of, groups);
+    ModelRun of_model(model, arguments, "run");
+    run::Simulation& simulation = *of_model.simulation;
+    Rows rows(of, simulation.grid(), reactions, columns);
     simulation.observe(rows);
     std::unique_ptr<PythonObserver> observer;
-    if (!options.observer.is_none()) {
-        observer = std::make_unique<PythonObserver>(options.observer);
+    if (!function.is_none()) {
+        observer = std::make_unique<PythonObserver>(function);
         simulation.observe_checked(*observer);
     }
     const Ended ended = march(simulation, observer.get());
     const run::Outcome& out = ended.outcome;
-    if (simulation.events() != nullptr && !simulation.events()->fault().empty())
-        warnings.push_back(simulation.events()->fault());
-    for (const run::Finding& found : simulation.findings()) warnings.push_back(found.text);
     py::dict result;
     result["arrays"] = rows.arrays();
     result["columns"] = columns;
-    result["events"] = event_tables.arrays(static_cast<size_t>(system.bodies()));
+    result["events"] = of_model.event_tables.arrays(static_cast<size_t>(of.model->bodies()));
     result["event_names"] = event_names(of);
     result["stopped_by"] = out.stopped_by.empty() ? py::object(py::none()) : py::cast(out.stopped_by);
     result["seconds"] = out.step_seconds;
@@ -306,11 +246,15 @@ py::dict run(const ModelPointer& model, const Options& options)
     result["status"] = out.status;
     result["error"] = ended.error;
     result["t_end"] = out.t;
-    result["integrator"] = scheme->name;
-    result["step"] = scheme->adaptive ? py::object(py::none()) : py::object(py::float_(simulation.grid().h));
+    result["integrator"] = of_model.scheme().name;
+    result["step"] =
+        of_model.scheme().adaptive ? py::object(py::none()) : py::object(py::float_(simulation.grid().h));
     result["statistics"] = counters(out.statistics);
     result["constraint_norm"] = rows.constraint_norm;
+    const std::vector<std::string> warnings = of_model.warnings();
+    const auto before = static_cast<std::ptrdiff_t>(simulation.warnings().size());
     result["warnings"] = warnings;
+    result["findings"] = std::vector<std::string>(warnings.begin() + before, warnings.end());
     return result;
 }
 
@@ -326,13 +270,16 @@ void define_run(py::module_& m)
         "_run",
         [](const ModelPointer& model, py::object integrator, std::optional<double> end,
            std::optional<double> step, std::optional<double> interval,
-           std::map<std::string, std::string> settings, bool reactions, bool force,
-           std::vector<std::string> columns, py::object observer) {
-            return run(model, {std::move(integrator), end, step, interval, std::move(settings), reactions,
-                               force, std::move(columns), std::move(observer)});
+           std::map<std::string, std::string> settings, bool force, py::object warn, bool reactions,
+           const std::vector<std::string>& columns, const py::object& observer) {
+            return run(
+                model,
+                {std::move(integrator), end, step, interval, std::move(settings), force, std::move(warn)},
+                reactions, columns, observer);
         },
         py::arg("model"), py::arg("integrator"), py::arg("end"), py::arg("step"), py::arg("interval"),
-        py::arg("settings"), py::arg("reactions"), py::arg("force"), py::arg("columns"), py::arg("observer"));
+        py::arg("settings"), py::arg("force"), py::arg("warn"), py::arg("reactions"), py::arg("columns"),
+        py::arg("observer"));
 }
 
 }  // namespace hilda::python

@@ -14,6 +14,7 @@ from . import _hilda
 from .errors import NumericalFailure, UsageError
 from .model import _json
 from .stored import StoredResult, _read_json, load
+from .warn import warn
 
 _one_at_a_time = threading.Lock()  # a co-simulation has the signals and the number of threads of the process
 
@@ -37,7 +38,7 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
         force: overwrite a folder that is not empty.
         resume: continue the run in the folder from its last checkpoint, also to a later end.
 
-    Returns the result that was written. Other threads of Python run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which
+    Returns the result that was written. The warnings of the mechanism are SimulationWarnings as well. Other threads of Python run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which
     `resume` continues, and raises KeyboardInterrupt.
 
     Raises:
@@ -67,4 +68,7 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
     if code != 0:
         summary = _read_json(os.path.join(folder, "summary.json"))
         raise NumericalFailure(summary.get("status", "failed"), f"{folder}: {summary.get('message', 'the run has failed')}")
-    return load(folder)
+    result = load(folder)
+    for text in result.summary["model"]["warnings"]:
+        warn(text)
+    return result

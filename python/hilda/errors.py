@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exceptions. Their texts are those of the program `hilda`."""
+"""Exceptions and warnings. Their texts are those of the program `hilda`."""
 
 from __future__ import annotations
 
@@ -28,6 +28,14 @@ class FileError(Error, OSError):
 
 class NotAvailable(Error, RuntimeError):
     """A device or an optional component is not available."""
+
+
+class SimulationWarning(UserWarning):
+    """The result of a run may be wrong or incomplete: a warning of the model, of the checks before the run, or of its steps.
+
+    warnings.simplefilter("ignore", hilda.SimulationWarning) silences them, and "error" makes them exceptions. Results have
+    their texts in any case.
+    """
 
 
 class NumericalFailure(Error, ArithmeticError):

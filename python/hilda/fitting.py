@@ -16,6 +16,7 @@ from . import _hilda
 from .errors import NumericalFailure, UsageError
 from .model import Model, Source, _json
 from .tables import Table, aligned, new_axes
+from .warn import warn
 
 Start = float | None | Sequence[float | None]
 
@@ -141,7 +142,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         step: step [s] of an integrator with fixed steps.
         **settings: rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity, reparametrise of Model.run().
 
-    The minimum is that of Levenberg and Marquardt's method in a trust region. Ctrl-C ends the fit.
+    The minimum is that of Levenberg and Marquardt's method in a trust region. Ctrl-C ends the fit. The warnings of a fit
+    that reaches the minimum are SimulationWarnings as well.
 
     Raises:
         InvalidInput, UsageError: before the first run.
@@ -174,6 +176,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         failure = NumericalFailure("not_converged", "fit: " + reason)
         failure.fit = result
         raise failure
+    for text in result.warnings:
+        warn(text)
     return result
 
 

@@ -14,6 +14,7 @@ from .errors import InvalidInput, UsageError
 from .integrator import Integrator
 from .result import Result
 from .surface import Surface
+from .warn import warn
 
 _one_start = threading.RLock()
 Source = str | os.PathLike[str] | dict[str, Any]
@@ -80,8 +81,8 @@ class Model:
         - gamma(x): gamma in C (rddot, omegadot_bar) = gamma, the second time derivative of the rows; shape (rows,).
 
         Functions that are not given are computed by differences, with relative errors of about 1e-9 if the rows change
-        smoothly over lengths of 1 mm and more. Those that are given are compared with differences at the start, see
-        `warnings`. nu and gamma by differences are refused where the estimated error exceeds 1e-5. The functions must be
+        smoothly over lengths of 1 mm and more. Those that are given are compared with differences at the start: each run
+        has a SimulationWarning for one that is wrong. nu and gamma by differences are refused where the estimated error exceeds 1e-5. The functions must be
         defined a little outside of the run, also before its start. A call takes about 2 us, and differences take 48 of
         them for `variation`.
         """
@@ -190,7 +191,7 @@ class Model:
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings of the reader, with their places in the model."""
+        """Warnings of the reader, with their places in the model. Each run reports them as SimulationWarning."""
         return self._core().warnings
 
     @property
@@ -243,6 +244,9 @@ class Model:
 
         The events of the model are found, see Result.events. One with the action stop ends the run.
 
+        Warnings are those of Python, of the class SimulationWarning, and in Result.warnings. Those of the steps are reported
+        after a run that does not fail.
+
         Other threads run meanwhile. Ctrl-C ends the run: the KeyboardInterrupt has the rows up to then as
         attribute `result`.
 
@@ -251,22 +255,16 @@ class Model:
             NumericalFailure: with the rows up to the failure as attribute `result`.
         """
         core = self._core()
-        used: str | Integrator
-        if isinstance(integrator, str):
-            used = integrator
-        elif isinstance(integrator, type) and issubclass(integrator, Integrator):
-            used = integrator(_hilda.System(core))
-        else:
-            raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
-        settings = {"tolerance": tolerance, "max-iterations": max_iterations, "linear-solver": linear_solver,
-                    "rho-infinity": rho_infinity, "rtol": rtol, "atol": atol,
-                    "reparametrise": "" if reparametrise else None}
-        outcome = _hilda._run(core, used, end, step, interval,
-                              {name: str(value) for name, value in settings.items() if value is not None},
-                              reactions, force, [columns] if isinstance(columns, str) else list(columns), observer)
+        outcome = _hilda._run(core, _used(core, integrator), end, step, interval,
+                              _texts(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
+                                     rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise),
+                              force, warn, reactions, [columns] if isinstance(columns, str) else list(columns), observer)
         error = outcome.pop("error")
+        findings = outcome.pop("findings")
         result = Result(core, outcome)
         if error is None:
+            for text in findings:
+                warn(text)
             return result
         error.result = result
         try:
@@ -291,6 +289,21 @@ def run(model: Model | Source, integrator: str | type[Integrator] = _hilda.defau
     The options are those of Model.run().
     """
     return (model if isinstance(model, Model) else Model(model)).run(integrator, **options)
+
+
+def _used(core: _hilda._Model, integrator: str | type[Integrator]) -> str | Integrator:
+    """The name of an integrator, or an object of its class"""
+    if isinstance(integrator, str):
+        return integrator
+    if isinstance(integrator, type) and issubclass(integrator, Integrator):
+        return integrator(_hilda.System(core))
+    raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
+
+
+def _texts(*, reparametrise: bool, **settings: Any) -> dict[str, str]:
+    """The settings that are given, as the options of the program"""
+    given = {name.replace("_", "-"): str(value) for name, value in settings.items() if value is not None}
+    return {**given, "reparametrise": ""} if reparametrise else given
 
 
 def integrators() -> dict[str, dict[str, Any]]:

@@ -14,6 +14,7 @@ from .integrator import Integrator
 from .model import Model, Source
 from .result import Result
 from .tables import Table, new_axes
+from .warn import RunWarnings, collected
 
 QUANTITIES = {"r": "m", "A": "1", "v": "m/s", "omega": "rad/s"}
 
@@ -96,7 +97,8 @@ def convergence(model: Model | Source, integrators: Iterable[str | type[Integrat
         instants: the errors are root mean squares over at most this many instants.
         **options: options of Model.run(), such as tolerance.
 
-    The reference solution is rA-dop853 with rtol 1e-13; a second one with 1e-11 estimates its error.
+    The reference solution is rA-dop853 with rtol 1e-13; a second one with 1e-11 estimates its error. The warnings of the
+    runs that do not fail are SimulationWarnings, each text once, with the run.
     """
     model = model if isinstance(model, Model) else Model(model)
     chosen = list(integrators)
@@ -119,20 +121,34 @@ def convergence(model: Model | Source, integrators: Iterable[str | type[Integrat
     interval = largest * -(-count // instants)
     duration = interval * max(1, int(count * largest / interval * (1 + 1e-9)))
 
-    exact, coarser = (model.run("rA-dop853", rtol=rtol, end=duration, interval=interval) for rtol in (1e-13, 1e-11))
+    found = RunWarnings()
+    exact, coarser = _reference(model, duration, interval, found)
     floor = _errors(coarser, exact)
     error = {name: np.full((len(names), len(descending)), np.nan) for name in QUANTITIES}
     failures = []
     for i, integrator in enumerate(chosen):
         for k, h in enumerate(descending):
+            name = f"{names[i]} at h = {h:g} s"
             try:
-                result = model.run(integrator, step=h, end=duration, interval=interval, **options)
+                with collected() as texts:
+                    result = model.run(integrator, step=h, end=duration, interval=interval, **options)
             except ArithmeticError as failure:  # hilda.NumericalFailure
-                failures.append(f"{names[i]} at h = {h:g} s: {failure}")
+                failures.append(f"{name}: {failure}")
                 continue
-            for name, value in _errors(result, exact).items():
-                error[name][i, k] = value
+            found.add(name, texts)
+            for quantity, value in _errors(result, exact).items():
+                error[quantity][i, k] = value
     return Convergence(model.name, names, descending, error, floor, failures)
+
+
+def _reference(model: Model, end: float, interval: float, found: RunWarnings) -> list[Result]:
+    """The reference solution, and one with larger tolerances"""
+    runs = []
+    for rtol in (1e-13, 1e-11):
+        with collected() as texts:
+            runs.append(model.run("rA-dop853", rtol=rtol, end=end, interval=interval))
+        found.add(f"reference solution with rtol {rtol:g}", texts)
+    return runs
 
 
 def _errors(result: Result, exact: Result) -> dict[str, float]:

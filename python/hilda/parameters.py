@@ -15,6 +15,7 @@ from .errors import UsageError
 from .model import Model, Source
 from .result import Result
 from .tables import Table, aligned, new_axes
+from .warn import RunWarnings, collected
 
 
 class Sweep(Table):
@@ -87,7 +88,8 @@ def sweep(source: Source, grid: Mapping[str, Sequence[Any]], measure: Mapping[st
         jobs: number of threads. The functions of `measure` are called in the calling thread.
         **options: options of Model.run(), such as step, rtol and end.
 
-    A run that fails numerically has NaN, and its message is in `failures`. Other errors are raised: an entry that does
+    A run that fails numerically has NaN, and its message is in `failures`. The warnings of the other runs are
+    SimulationWarnings, each text once, with the values of the run. Other errors are raised: an entry that does
     not exist is InvalidInput.
     """
     if isinstance(source, Model):
@@ -103,19 +105,22 @@ def sweep(source: Source, grid: Mapping[str, Sequence[Any]], measure: Mapping[st
     measured = {name: np.full(shape, np.nan) for name in measure}
     failures = []
 
-    def run(values: tuple[Any, ...]) -> Result | ArithmeticError:
-        try:
-            return Model(source, set=dict(zip(lists, values))).run(integrator, **options)
-        except ArithmeticError as failure:  # hilda.NumericalFailure
-            return failure
+    def run(values: tuple[Any, ...]) -> tuple[Result | ArithmeticError, list[str]]:
+        with collected() as texts:  # of this thread; those of a failure are not reported
+            try:
+                return Model(source, set=dict(zip(lists, values))).run(integrator, **options), texts
+            except ArithmeticError as failure:  # hilda.NumericalFailure
+                return failure, []
 
+    found = RunWarnings()
     combinations = list(itertools.product(*lists.values()))
     with ThreadPoolExecutor(jobs) as pool:
-        for index, values, result in zip(np.ndindex(*shape), combinations, pool.map(run, combinations)):
+        for index, values, (result, texts) in zip(np.ndindex(*shape), combinations, pool.map(run, combinations)):
+            place = ", ".join(f"{pointer} = {value}" for pointer, value in zip(lists, values))
             if isinstance(result, ArithmeticError):
-                place = ", ".join(f"{pointer} = {value}" for pointer, value in zip(lists, values))
                 failures.append(f"{place}: {result}")
                 continue
+            found.add(place, texts)
             for name, function in measure.items():
                 measured[name][index] = function(result)
     return Sweep("model" if isinstance(source, dict) else str(source), lists, measured, failures)

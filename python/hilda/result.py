@@ -114,8 +114,10 @@ class Result(Motions):
         return axes
 
     def __repr__(self) -> str:
+        count = len(self.warnings)
+        found = f", {count} warning{'s' if count > 1 else ''}: {self.warnings[0]}" if count > 0 else ""
         return (f"<hilda.Result {self.model}, {self.integrator}: {len(self)} rows up to {self.t_end:g} s, "
-                f"status {self.status}>")
+                f"status {self.status}{found}>")
 
 
 class Events(Motions):

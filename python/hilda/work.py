@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from .errors import UsageError
 from .integrator import Integrator
 from .model import Model, Source, integrators as registered
-from .orders import QUANTITIES, _errors
+from .orders import QUANTITIES, _errors, _reference
 from .tables import Table, aligned, new_axes
+from .warn import RunWarnings, collected
 
 
 class WorkPrecision(Table):
@@ -112,7 +113,8 @@ def work_precision(model: Model | Source, integrators: Iterable[str | type[Integ
         **options: options of Model.run(), such as tolerance.
 
     The runs are computed one after the other. The reference solution is rA-dop853 with rtol 1e-13; a second one with
-    1e-11 estimates its error. The figures of a study are those of `hilda study work-precision`, which has more models.
+    1e-11 estimates its error. The warnings of the runs that do not fail are SimulationWarnings,
+    each text once, with the run. The figures of a study are those of `hilda study work-precision`, which has more models.
     """
     model = model if isinstance(model, Model) else Model(model)
     chosen = list(integrators)
@@ -134,19 +136,24 @@ def work_precision(model: Model | Source, integrators: Iterable[str | type[Integ
             raise UsageError(f"work_precision: the interval {interval:g} s between the instants must be a multiple of each step, "
                              f"got {h:g} s")
 
-    exact, coarser = (model.run("rA-dop853", rtol=rtol, end=duration, interval=interval) for rtol in (1e-13, 1e-11))
+    found = RunWarnings()
+    exact, coarser = _reference(model, duration, interval, found)
     study = WorkPrecision(model.name, names, [list(values[a]) for a in is_adaptive], is_adaptive, _errors(coarser, exact))
     for i, integrator in enumerate(chosen):
         for k, value in enumerate(study.resolution[i]):
             resolution: dict[str, Any] = {"rtol" if is_adaptive[i] else "step": value}
+            name = f"{names[i]} with {next(iter(resolution))} {value:g}"
             try:
-                results = [model.run(integrator, end=duration, interval=interval, **resolution, **options) for _ in range(repeats)]
+                with collected() as texts:
+                    results = [model.run(integrator, end=duration, interval=interval, **resolution, **options)
+                               for _ in range(repeats)]
             except ArithmeticError as failure:  # hilda.NumericalFailure
-                study.failures.append(f"{names[i]} with {next(iter(resolution))} {value:g}: {failure}")
+                study.failures.append(f"{name}: {failure}")
                 continue
+            found.add(name, texts)
             study.seconds[i][k] = min(result.seconds for result in results)
-            for name, error in _errors(results[0], exact).items():
-                study.error[name][i][k] = error
+            for quantity, error in _errors(results[0], exact).items():
+                study.error[quantity][i][k] = error
     return study
 
 

@@ -65,7 +65,9 @@ class EntryPoints(unittest.TestCase):
         self.assertIn(of_run, ended.stderr)
 
         path = model if model == "double_pendulum" else f"{self.folder}/{model}"
-        result = hilda.run(path, integrator, step=step, end=end, interval=end)
+        with self.assertWarns(hilda.SimulationWarning) as warned:
+            result = hilda.run(path, integrator, step=step, end=end, interval=end)
+        self.assertEqual(str(warned.warning), of_run)
         self.assertEqual((result.status, result.warnings), ("ok", [of_run]))
 
         ended = self.call("study", "compare", "--problem", model, *options, "--steps", str(step), "--no-plot", "--quiet", "--output", "study")

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/error_estimate.hpp"
 
-#include "contact/evolving/unilateral.hpp"
-#include "lie/integrator.hpp"
+#include "run/simulation.hpp"
 
 #include <fmt/format.h>
 
@@ -32,17 +31,25 @@ class RefinedRuns::Finer final : public lie::Observer {
 public:
     Finer(const dae::Model& model, const lie::State& x, const lie::Scheme& scheme,
           const lie::Settings& settings, const lie::TimeGrid& grid, int parts)
-        : integrator(contact::make_integrator(model, scheme, settings)),
-          march(x, *integrator, grid.h / parts), steps(grid.steps * parts), parts(parts)
-    {}
+        : simulation(
+              {.model = model,
+               .start = x,
+               .scheme = scheme,
+               .grid = {.h = grid.h / parts, .steps = grid.steps * parts, .interval = grid.interval * parts},
+               .settings = settings,
+               .accept_unstable = true}),  // the run with h was checked
+          parts(parts)
+    {
+        simulation.observe_checked(*this);
+    }
 
     /// The complete state at node n of the run with h
     const lie::State& at(long n)
     {
         target = n * parts;
-        lie::Observer* observers[] = {this};
-        while (complete < target && march.number() < steps) march.advance(observers);
-        if (complete < target) march.finish(observers);
+        while (complete < target && simulation.step()) {
+        }
+        if (complete < target) simulation.run().throw_failure();
         return node;
     }
 
@@ -53,9 +60,8 @@ public:
     }
 
 private:
-    std::unique_ptr<lie::Integrator> integrator;
-    lie::March march;
-    const long steps, parts;
+    Simulation simulation;
+    const long parts;
     long target = 0, complete = -1;
     lie::State node;
 };

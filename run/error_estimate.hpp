@@ -58,8 +58,8 @@ public:
                 const lie::Settings& settings, const lie::TimeGrid& grid);
     ~RefinedRuns() override;
 
-    /// Compares a node if it is an output row. A numerical failure of a finer run ends the comparison and
-    /// becomes a doubt.
+    /// Compares a node if it is an output row. A failure of a finer run, also one that its watch finds,
+    /// ends the comparison and becomes a doubt.
     void accepted(const lie::State& node, long n, int iterations) override;
     /// The estimate at the end. contact_events: number of impacts, lift-offs and the like in the run
     ErrorEstimate estimate(size_t contact_events) const;

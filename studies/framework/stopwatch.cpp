@@ -53,6 +53,7 @@ double seconds_of_march(const Run& run, const lie::Settings& of_study)
     while (seconds < minimum_time) {
         const auto integrator = contact::make_integrator(
             *d.model, *run.scheme, settings);  // a new one, because it may store data of a run
+        // The steps alone: a run::Simulation spends a part of its time on checks.
         lie::March march(d.x, *integrator, run.h);
         const double begin = run::thread_seconds();
         while (march.number() < grid.steps) march.advance({});

@@ -11,6 +11,10 @@
 #include "reference/motions/ball_in_bowl.hpp"
 #include "reference/motions/ellipsoid_on_plane.hpp"
 #include "run/columns/contact_rows.hpp"
+#include "run/watch/run_check.hpp"
+#include "run/watch/watch.hpp"
+
+#include <algorithm>
 
 namespace hilda::studies {
 
@@ -145,11 +149,18 @@ lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vecto
     lie::Saddle K(*d.model);
     lie::Trajectory run;
     lie::State x = d.x;
+    // The steps between two instants have their own length, and one integrator computes them all: the checks
+    // of run::Simulation without its grid
+    lie::TimeGrid grid = lie::TimeGrid::over(instants.empty() ? 0 : instants.back(), h);
+    grid.interval = std::max(1L, grid.steps);
+    run::check_run(*d.model, x, scheme, grid, false);
+    run::Watch watch(*d.model, x, *integrator, scheme, grid, run::Watch::Action::stop);
+    lie::Observer* observers[] = {&watch};
     for (const double instant : instants) {
         const double steps = std::ceil((instant - x.t) / h - 1e-6);
         if (steps > 0) {
             lie::March march(x, *integrator, (instant - x.t) / steps);
-            while (march.number() < static_cast<long>(steps)) march.advance({});
+            while (march.number() < static_cast<long>(steps)) march.advance(observers);
             x = march.node();
             x.t = instant;
         }

@@ -19,7 +19,8 @@ lie::Trajectory evolving_reference(dae::Description& d, const std::vector<double
 constexpr const char* evolving_reference_name =
     "minimal coordinates (GSL rk8pd) at 1e-13, or rA-rkmk-4 at h = 1e-4 s";
 
-/// Integrates from d.x with steps of at most h [s], adjusted so that every instant is a node.
+/// Integrates from d.x with steps of at most h [s], adjusted so that every instant is a node. Throws
+/// io::UsageError as run::check_run(), and lie::NumericalFailure also for what run::Watch finds.
 lie::Trajectory run_with_small_steps(const dae::Description& d, const std::vector<double>& instants,
                                      const lie::Scheme& scheme, double h);
 

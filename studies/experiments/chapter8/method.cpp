@@ -51,6 +51,7 @@ public:
 
     void step(double h)
     {
+        // The steps are timed beside those of methods without checks: no run::Simulation
         if (!march) march = std::make_unique<lie::March>(start, *integrator, h);
         march->advance({});
     }

@@ -4,7 +4,6 @@
 import gc
 import inspect
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -219,13 +218,18 @@ for integrator, keys in (("rA-half-1", {"step": 1e-7}), ("rA-dop853", {"rtol": 1
 
     def test_functions_that_refer_to_the_simulation_are_collected(self):
         class Owner:
-            pass
+            load = [[0, 0, 0]]
 
-        owner = Owner()
-        owner.sim = hilda.Simulation(hilda.Model(MASS).force(lambda x: [[0, 0, 0]] if owner else None), step=0.01)
-        owner.sim.step()
-        reference = weakref.ref(owner)
-        del owner
+        def cycle():
+            owner = Owner()
+            owner.sim = hilda.Simulation(hilda.Model(MASS).force(lambda x: owner.load), step=0.01)
+            owner.sim.step()
+            return weakref.ref(owner)
+
+        gc.disable()
+        self.addCleanup(gc.enable)
+        reference = cycle()
+        self.assertIsNotNone(reference())
         gc.collect()
         self.assertIsNone(reference())
 
@@ -233,10 +237,12 @@ for integrator, keys in (("rA-half-1", {"step": 1e-7}), ("rA-dop853", {"rtol": 1
 class Loads(unittest.TestCase):
     def test_a_force_and_a_torque_of_piecewise_constant_size(self):
         # exact for methods that integrate constant loads exactly; others shift a change by up to half a step
-        for integrator, exact in (("rA-rkmk-4", True), ("rA-rattle", True), ("rA-dop853", True), ("rA-half-1-momentum", False),
-                                  ("rA-half-1", False), ("rA-genalpha", False)):
-            h = 0.01
-            sim = hilda.Simulation(MASS, integrator, step=h)
+        h = 0.01
+        for integrator, exact in (("rA-rkmk-4", True), ("rA-rattle", True), ("rA-dop853", True), ("rA-dop853 adaptive", True),
+                                  ("rA-rattle-adaptive adaptive", True), ("rA-half-1-momentum", False), ("rA-half-1", False),
+                                  ("rA-genalpha", False)):
+            name, _, adaptive = integrator.partition(" ")
+            sim = hilda.Simulation(MASS, name, **{"interval" if adaptive else "step": h})
             x = v = w = 0.0
             for n in range(10):
                 F, M = n - 4.5, 0.3 * n
@@ -254,7 +260,7 @@ class Loads(unittest.TestCase):
                 self.assertEqual(sim.warnings, [])
 
     def test_sampled_values_of_a_smooth_load_have_the_order_of_leapfrog(self):
-        # x'' = -sin t - 0.3 v', with the damping as a load that is set from the velocity of the state
+        # x'' = cos t, x(0) = x'(0) = 0: x = 1 - cos t
         errors = []
         for h in (0.02, 0.01):
             sim = hilda.Simulation({**MASS, "end": 4}, "rA-half-1-momentum", step=h)
@@ -303,7 +309,7 @@ class Loads(unittest.TestCase):
         sim = hilda.Simulation("double_pendulum", end=1)
         with self.assertRaisesRegex(ValueError, r"F must have the shape \(2, 3\), got \(1, 3\)"):
             sim.set_loads([[1, 0, 0]])
-        with self.assertRaisesRegex(ValueError, "n_bar.*nan|not finite|nan"):
+        with self.assertRaisesRegex(ValueError, "n_bar is not finite"):
             sim.set_loads(None, [[0, 0, 0], [0, 0, float("nan")]])
         with self.assertRaisesRegex(TypeError, "array of numbers"):
             sim.set_loads("much")

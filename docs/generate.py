@@ -123,7 +123,7 @@ def list_table(program, *arguments):
         if isinstance(value, bool):
             return "yes" if value else "no"
         if isinstance(value, list):
-            value = ", ".join(value) or None
+            value = ", ".join(map(str, value)) or None
         text = NONE if value is None else str(value)
         return code(text) if column == 0 else prose(text)
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Conversion of option values of the command line to numbers and lists. Each function takes the name of the
+/// Options: their declaration, from which command lines, their help and the identity of results come, and the
+/// conversion of their values to numbers and lists. Each function of the conversion takes the name of the
 /// option and its text. An invalid text is a UsageError that states the option, the valid range and the text.
 
 #pragma once
@@ -15,6 +16,32 @@
 #include <vector>
 
 namespace hilda::io {
+
+/// What depends on the value of an option
+enum class Scope {
+    numerical,  ///< results: the value is part of the identity of checkpoints and of the jobs of a study
+    output,     ///< files that are written, and what is printed
+    none        ///< neither, such as the number of concurrent runs
+};
+
+struct Option {
+    std::string name;        ///< --vtk
+    std::string value = "";  ///< name of its value in the help; empty for a switch
+    std::string help;
+    /// Throws UsageError for an invalid text.
+    void (*check)(const std::string& option, const std::string& text) = nullptr;
+    Scope scope = Scope::output;
+
+    bool is_switch() const { return value.empty(); }
+    /// max_iterations of --max-iterations: the key in JSON files and the keyword of Python
+    std::string key() const
+    {
+        std::string key = name.substr(2);
+        for (char& c : key)
+            if (c == '-') c = '_';
+        return key;
+    }
+};
 
 /// Throws UsageError "OPTION: what, got 'TEXT'".
 [[noreturn]] void refuse_option(const std::string& option, const std::string& what, const std::string& text);

@@ -5,6 +5,7 @@
 
 #include "io/archive.hpp"
 #include "io/files.hpp"
+#include "io/option_values.hpp"
 #include "io/registry.hpp"
 
 #include <algorithm>
@@ -50,15 +51,6 @@ public:
 /// The given command-line options of the sinks and their texts; a switch has the text ""
 using SinkOptions = std::map<std::string, std::string>;
 
-/// A command-line option of a sink
-struct SinkOption {
-    std::string name;        ///< --vtk
-    std::string value = "";  ///< name of its value in the help; empty for a switch
-    std::string help;
-    /// Throws UsageError for an invalid text.
-    void (*check)(const std::string& option, const std::string& text) = nullptr;
-};
-
 /// An output format. Run: what the sinks of a run are made from; it has a type Node. A file registers a
 /// format by
 ///
@@ -66,7 +58,7 @@ struct SinkOption {
 template <class Run>
 struct SinkType {
     std::string name;
-    std::vector<SinkOption> options = {};
+    std::vector<Option> options = {};
     /// The sink of a run; nullptr if the options of the run do not request it. Throws UsageError for options
     /// that do not apply. Writes no file.
     std::unique_ptr<Sink<typename Run::Node>> (*make)(const Run& run) = nullptr;
@@ -162,12 +154,12 @@ template <class Run, class App>
 void add_sink_options(App& app, SinkOptions& given)
 {
     for (const SinkType<Run>& type : Registry<SinkType<Run>>::all())
-        for (const SinkOption& option : type.options) {
+        for (const Option& option : type.options) {
             const auto set = [&given, option](const std::string& text) {
                 if (option.check != nullptr) option.check(option.name, text);
                 given[option.name] = text;
             };
-            if (option.value.empty())
+            if (option.is_switch())
                 app.add_flag_callback(
                     option.name, [set] { set(""); }, option.help);
             else

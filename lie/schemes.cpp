@@ -6,6 +6,10 @@
 #include "lie/settings.hpp"
 #include "lie/system.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 namespace hilda::lie {
 
 const Scheme& scheme(const std::string& name)
@@ -14,6 +18,19 @@ const Scheme& scheme(const std::string& name)
     std::string names;
     for (const Scheme& s : schemes()) names += (names.empty() ? "" : ", ") + s.name;
     reject("lie::scheme", "an integrator must be one of " + names, name);
+}
+
+std::vector<std::string> Scheme::option_names() const
+{
+    std::vector<std::string> names = uses;
+    for (const SchemeOption& own : options) names.push_back(own.option.name);
+    return names;
+}
+
+bool Scheme::uses_option(const std::string& option) const
+{
+    const std::vector<std::string> names = option_names();
+    return std::find(names.begin(), names.end(), option) != names.end();
 }
 
 std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
@@ -31,7 +48,39 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
         reject("integrator " + name,
                "redundant rows (\"redundant\": \"keep\" in the model file) need the condensed linear solver",
                "klu");
-    return construct(system, settings);
+    Settings complete = settings;
+    for (const SchemeOption& own : options) {
+        const double value = complete.of_scheme.try_emplace(own.option.name, own.default_value).first->second;
+        if (!std::isfinite(value)) reject("integrator " + name, own.option.name + " must be finite", value);
+    }
+    return construct(system, complete);
+}
+
+namespace {
+
+/// Whether two schemes mean the same option
+bool same(const SchemeOption& a, const SchemeOption& b)
+{
+    return a.option.value == b.option.value && a.option.help == b.option.help &&
+           a.option.scope == b.option.scope && a.default_value == b.default_value;
+}
+
+}  // namespace
+
+bool add_scheme(Scheme scheme)
+{
+    for (const SchemeOption& own : scheme.options) {
+        const std::string& option = own.option.name;
+        if (!option.starts_with("--") || option.size() < 3)
+            throw std::logic_error("integrator " + scheme.name +
+                                   ": the name of an option must begin with --, got " + option);
+        for (const Scheme& other : schemes())
+            for (const SchemeOption& there : other.options)
+                if (there.option.name == option && !same(own, there))
+                    throw std::logic_error("integrators " + scheme.name + " and " + other.name + " declare " +
+                                           option + " in two ways");
+    }
+    return io::Registry<Scheme>::add(std::move(scheme));
 }
 
 }  // namespace hilda::lie

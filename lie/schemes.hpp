@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/option_values.hpp"
 #include "io/registry.hpp"
 #include "lie/features.hpp"
 #include "lie/loads.hpp"
@@ -18,6 +19,13 @@ class Integrator;
 struct Settings;
 class System;
 
+/// An option of a scheme itself, which no other part of the program knows: a number, or a switch with the
+/// values 0 and 1. Its value is Settings::of_scheme.at(NAME), of which a constructor keeps a copy.
+struct SchemeOption {
+    io::Option option;
+    double default_value = 0;
+};
+
 /// A scheme of the list: its name, its properties and its constructor.
 struct Scheme {
     std::string name;
@@ -26,8 +34,12 @@ struct Scheme {
     int order_lambda = 1;          ///< of the multipliers, for a start in motion
     std::string formulation;       ///< rA, rp or reps
     std::string unknowns;          ///< of the Newton iteration
-    std::string source;            ///< reference
-    bool adaptive = false;         ///< whether the scheme chooses internal steps from rtol and atol
+    /// Names of the options of Settings that the scheme uses, as in run::setting_options(): --tolerance. An
+    /// option that none of the integrators of a command uses is refused.
+    std::vector<std::string> uses = {};
+    std::vector<SchemeOption> options = {};  ///< of this scheme only; schemes may share one
+    std::string source;                      ///< reference
+    bool adaptive = false;                   ///< whether the scheme chooses internal steps from rtol and atol
     /// Whether State contains all that a continued run needs. Otherwise a run cannot be resumed.
     bool resumes = true;
     /// For a scheme of fixed step that can also choose its steps: the same scheme with internal steps. It is
@@ -41,15 +53,16 @@ struct Scheme {
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of
     /// the scheme. Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;
-    bool rho_infinity =
-        false;  ///< uses Settings::rho_infinity; --rho-infinity is refused where no scheme does
     std::unique_ptr<Integrator> (*construct)(const System&, const Settings&) = nullptr;
 
     /// The scheme that chooses its steps, if there is one; otherwise this scheme
     const Scheme& with_adaptive_steps() const { return adaptive_form ? *adaptive_form : *this; }
+    /// Names of the options that the scheme uses and declares
+    std::vector<std::string> option_names() const;
+    bool uses_option(const std::string& option) const;
 
     /// Constructs the integrator. Throws InvalidInput if the system has a feature that the scheme does not
-    /// take.
+    /// take, and for a value of Settings::of_scheme that is not finite.
     std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;
 };
 
@@ -65,6 +78,10 @@ inline const std::vector<Scheme>& schemes() { return io::Registry<Scheme>::all()
 /// The scheme with this name. Throws InvalidInput with the list of names if there is none.
 const Scheme& scheme(const std::string& name);
 
+/// Adds a scheme. Throws std::logic_error if there is one with this name, if the name of one of its options
+/// does not begin with two dashes, or if another scheme declares an option with this name in another way.
+bool add_scheme(Scheme scheme);
+
 /// Adds the scheme of the class Method, which has the constructor Method(const System&, const Settings&). The
 /// file of a scheme ends with this call.
 template <class Method>
@@ -73,7 +90,7 @@ bool register_scheme(Scheme scheme)
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<Method>(system, settings);
     };
-    return io::Registry<Scheme>::add(std::move(scheme));
+    return add_scheme(std::move(scheme));
 }
 
 }  // namespace hilda::lie

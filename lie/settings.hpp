@@ -5,6 +5,9 @@
 
 #include "lie/solver/linear_solver.hpp"
 
+#include <map>
+#include <string>
+
 namespace hilda::lie {
 
 /// Settings of an integrator. Each scheme uses those that apply to it.
@@ -22,6 +25,9 @@ struct Settings {
     /// Adaptive schemes call this function between their internal steps and throw Interrupted if it returns
     /// true.
     bool (*stop)() = nullptr;
+    /// Values of the options that schemes declare (Scheme::options), by name: --damping. Scheme::make() adds
+    /// the default values of those that are missing.
+    std::map<std::string, double> of_scheme = {};
 };
 
 }  // namespace hilda::lie

@@ -158,7 +158,7 @@ void SingleRun::read()
     result.integrator = scheme.name;
     result.step = grid.h;
     result.interval = static_cast<double>(grid.interval) * grid.h;
-    result.settings = options.settings;
+    result.settings = settings_json(options.settings, &scheme);
     if (scheme.adaptive) {
         result.rtol = options.settings.rtol;
         result.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
@@ -186,7 +186,7 @@ RunSettings SingleRun::settings_of_run()
         all.erase(format);
     all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
     all["--integrator"] = scheme.name;
-    all.merge(given_settings(options.settings, scheme.adaptive));
+    all.merge(given_settings(options.settings, scheme));
     if (!scheme.adaptive) all["--step"] = io::shortest(grid.h);
     all[interval_option] = io::shortest(result.interval);
     // Rows are counted in steps: with another step the rows of the interrupted run would have another

@@ -6,7 +6,6 @@
 #include "lie/integrator.hpp"
 #include "run/diagnosis.hpp"
 #include "run/provenance.hpp"
-#include "run/recording/setting_options.hpp"
 
 #include <fmt/format.h>
 
@@ -46,12 +45,8 @@ io::Json summary(const RunResult& r)
         out["integrator"].update(
             {{"rtol", r.rtol}, {"atol", r.atol}, {"end", r.end}, {"interval", r.interval}});
     else
-        out["integrator"].update({{"step", r.step},
-                                  {"end", r.end},
-                                  {"interval", r.interval},
-                                  {"tolerance", r.settings.tolerance}});
-    const io::Json settings = settings_json(r.settings, r.rtol > 0);
-    for (const io::Json::Member& setting : *settings.members())
+        out["integrator"].update({{"step", r.step}, {"end", r.end}, {"interval", r.interval}});
+    for (const io::Json::Member& setting : *r.settings.members())
         if (out["integrator"].member(setting.key) == nullptr) out["integrator"][setting.key] = setting.value;
     out["counters"] = {{"steps", r.statistics.steps},
                        {"newton_iterations", r.statistics.iterations},

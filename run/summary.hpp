@@ -5,7 +5,6 @@
 
 #include "dae/start.hpp"
 #include "io/json.hpp"
-#include "lie/settings.hpp"
 #include "lie/statistics.hpp"
 #include "run/columns/invariants.hpp"
 #include "run/error_estimate.hpp"
@@ -24,7 +23,7 @@ struct RunResult {
 
     std::string model, integrator;
     double step = 0, end = 0, interval = 0;  ///< [s]; interval: between output rows, on the time grid
-    lie::Settings settings;
+    io::Json settings;                       ///< of the integrator, see settings_json()
     double rtol = 0, atol = 0;  ///< of an adaptive scheme, whose nodes are the output rows; 0: fixed step
     double t = 0;               ///< time reached [s]
 

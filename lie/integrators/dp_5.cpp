@@ -39,6 +39,7 @@ const bool registered_dp_5 = register_with_adaptive_steps<RungeKuttaStep, dorman
      .order_lambda = 5,
      .formulation = "rA",
      .unknowns = "none; projection",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Dormand, Prince (1980), with projection",
      .stability = 1,
      .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});

@@ -49,6 +49,7 @@ const bool registered_fully_implicit_1 = register_scheme<FullyImplicit1>(
      .order_lambda = 1,
      .formulation = "rA",
      .unknowns = "r'', omega', lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.4",
      .loads = LoadEvaluation::extrapolated,
      .takes = {Feature::algebraic, Feature::redundant, Feature::history}});

@@ -303,10 +303,10 @@ const bool registered_generalised_alpha = register_scheme<GeneralisedAlpha>(
      .order_lambda = 2,
      .formulation = "rA",
      .unknowns = "increment of (r, A), beta' h^2 lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rho-infinity"},
      .source = "Bruls, Cardona, Arnold (2012)",
      .loads = LoadEvaluation::implicit,
-     .takes = {Feature::algebraic, Feature::redundant, Feature::history},
-     .rho_infinity = true});
+     .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

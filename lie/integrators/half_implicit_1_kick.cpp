@@ -42,6 +42,7 @@ const bool registered_half_implicit_1_kick = register_scheme<HalfImplicit1Kick>(
      .order_lambda = 2,
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.5, with start and velocities of leapfrog",
      .loads = LoadEvaluation::extrapolated,
      .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,

@@ -120,6 +120,7 @@ const bool registered_half_implicit_1_momentum = register_scheme<HalfImplicit1Mo
      .order_lambda = 2,
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Hante, Arnold (2021) without velocity projection; Fang (2022), Sec. 3.5",
      .loads = LoadEvaluation::extrapolated,
      .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,

@@ -56,6 +56,7 @@ const bool registered_half_implicit_2 = register_scheme<HalfImplicit2>(
      .order_lambda = 1,
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.6",
      .loads = LoadEvaluation::extrapolated,
      .takes = {Feature::algebraic, Feature::redundant, Feature::history},

@@ -80,6 +80,7 @@ const bool registered_half_implicit_2_bdf2 =
                                         .order_lambda = 2,
                                         .formulation = "rA",
                                         .unknowns = "r, h omega, h^2 lambda",
+                                        .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
                                         .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
                                         .loads = LoadEvaluation::extrapolated,
                                         .takes = {Feature::algebraic, Feature::redundant, Feature::history},

@@ -16,6 +16,7 @@ const bool registered_radau_5 = register_with_adaptive_steps<RadauStep>(
      .order_lambda = 5,
      .formulation = "rA",
      .unknowns = "stages of r', omega, lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Hairer, Wanner (1996), on the Lie group",
      .loads = LoadEvaluation::implicit,
      .takes = {Feature::nonholonomic, Feature::history}});

@@ -34,6 +34,7 @@ const bool registered_rattle =
                              .order_lambda = 2,
                              .formulation = "rA",
                              .unknowns = "r, h omega, h^2 lambda / 2",
+                             .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
                              .source = "Hante, Arnold (2021)",
                              .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
 

@@ -282,17 +282,18 @@ private:
     Eigen::VectorXd change, tolerance;
 };
 
-const bool registered_rattle_adaptive =
-    register_scheme<RattleAdaptive>({.name = "rA-rattle-adaptive",
-                                     .description = "RATTLE with reversible variable steps; the first one "
-                                                    "from rtol and atol, the others from the loads",
-                                     .order = 2,
-                                     .order_lambda = 2,
-                                     .formulation = "rA",
-                                     .unknowns = "r, h omega, h^2 lambda / 2",
-                                     .source = "Hairer, Söderlind (2005), with RATTLie",
-                                     .adaptive = true,
-                                     .takes = {Feature::redundant}});
+const bool registered_rattle_adaptive = register_scheme<RattleAdaptive>(
+    {.name = "rA-rattle-adaptive",
+     .description = "RATTLE with reversible variable steps; the first one "
+                    "from rtol and atol, the others from the loads",
+     .order = 2,
+     .order_lambda = 2,
+     .formulation = "rA",
+     .unknowns = "r, h omega, h^2 lambda / 2",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rtol", "--atol"},
+     .source = "Hairer, Söderlind (2005), with RATTLie",
+     .adaptive = true,
+     .takes = {Feature::redundant}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -108,6 +108,7 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .order_lambda = order,
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
+            .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
             .source = source,
             .takes = {Feature::redundant}};
 }

@@ -87,6 +87,7 @@ bool register_with_adaptive_steps(Scheme scheme)
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
     adaptive.takes = adaptive.takes.without({Feature::history});
+    adaptive.uses.insert(adaptive.uses.end(), {"--rtol", "--atol"});
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<AdaptiveStep<Method>>(system, settings, more()...);
     };
@@ -94,7 +95,7 @@ bool register_with_adaptive_steps(Scheme scheme)
     scheme.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<Method>(system, settings, more()...);
     };
-    return io::Registry<Scheme>::add(std::move(scheme));
+    return add_scheme(std::move(scheme));
 }
 
 }  // namespace hilda::lie

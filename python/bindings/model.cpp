@@ -138,6 +138,7 @@ py::dict properties(const lie::Scheme& scheme)
     all["source"] = scheme.source;
     all["adaptive"] = scheme.adaptive || scheme.adaptive_form != nullptr;
     all["takes"] = lie::keys(scheme.takes);
+    all["options"] = scheme.with_adaptive_steps().option_names();
     return all;
 }
 

@@ -44,7 +44,7 @@ ModelRun::ModelRun(const ModelPointer& of, const RunArguments& arguments, const 
 
 run::RunSettings ModelRun::identity() const
 {
-    run::RunSettings all = run::given_settings(settings, used->adaptive);
+    run::RunSettings all = run::given_settings(settings, *used);
     all["model"] = fmt::format("{:016x}", io::checksum(description.text.data(), description.text.size()));
     if (!model->functions.empty())
         all["functions"] = fmt::format("{}", fmt::join(model->names_of_functions, ", "));

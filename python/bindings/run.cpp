@@ -263,9 +263,11 @@ py::dict run(const ModelPointer& model, const RunArguments& arguments, bool reac
 void define_run(py::module_& m)
 {
     m.attr("default_integrator") = run::default_integrator;
-    py::list names;
-    for (const run::SettingOption& option : run::setting_options()) names.append(option.key());
-    m.attr("setting_names") = names;
+    m.def("setting_names", [] {
+        std::vector<std::string> names;
+        for (const run::SettingOption& option : run::setting_options()) names.push_back(option.key());
+        return names;
+    });
     m.def(
         "_run",
         [](const ModelPointer& model, py::object integrator, std::optional<double> end,

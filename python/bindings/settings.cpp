@@ -4,7 +4,6 @@
 #include "lie/schemes.hpp"
 #include "run/recording/setting_options.hpp"
 #include "run/watch/run_check.hpp"
-#include "studies/framework/study.hpp"
 
 namespace hilda::python {
 
@@ -20,7 +19,7 @@ lie::Settings settings_of(const std::string& command, const lie::Scheme& scheme,
             given.push_back(option.name);
         }
     run::check_step_options(scheme, given, has_step, interval);
-    studies::refuse_unused_settings(command, given, {&scheme});
+    run::refuse_unused_settings(command, given, {&scheme});
     return settings;
 }
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _hilda
 from .errors import NumericalFailure, UsageError
 from .model import Model, Source, _json
+from .settings import settings_as_text
 from .tables import Table, aligned, new_axes
 from .warn import warn
 
@@ -140,7 +141,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         jobs: number of concurrent runs.
         max_fit_iterations: largest number of iterations of the fit.
         step: step [s] of an integrator with fixed steps.
-        **settings: rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity, reparametrise of Model.run().
+        **settings: the settings of Model.run(): rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity,
+            reparametrise, and those that integrators of plug-ins declare.
 
     The minimum is that of Levenberg and Marquardt's method in a trust region. Ctrl-C ends the fit. The warnings of a fit
     that reaches the minimum are SimulationWarnings as well.
@@ -152,9 +154,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
     """
     if isinstance(source, Model):
         raise UsageError("fit: needs the name, the path or the content of a model, whose entries it changes; got a Model")
-    known = _hilda.setting_names
-    if unknown := [key for key in settings if key not in known]:
-        raise UsageError(f"fit: unknown keys {', '.join(unknown)}; known settings are {', '.join(sorted(known))}")
+    chosen = settings_as_text("fit", settings)
     if jobs < 1 or max_fit_iterations < 1:
         raise UsageError(f"fit: jobs and max_fit_iterations must be positive, got {jobs} and {max_fit_iterations}")
     t, names, values, origin = _read(data, columns)
@@ -167,7 +167,6 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         if not directory and _hilda._is_path(name):
             directory = os.path.dirname(name)
     changes = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
-    chosen = {key.replace("_", "-"): str(value) for key, value in settings.items() if value not in (None, False)}
     outcome = _hilda._fit(name, text, directory, changes, [_parameter(*item) for item in parameters.items()], origin, t, names,
                           values, _sigma(sigma, names), integrator, step, chosen, fix_initial, max_fit_iterations, jobs)
     result = Fit(outcome, list(parameters), t, names, values, directory)

@@ -13,6 +13,7 @@ from ._hilda import State
 from .errors import InvalidInput, UsageError
 from .integrator import Integrator
 from .result import Result
+from .settings import settings_as_text
 from .surface import Surface
 from .warn import warn
 
@@ -220,7 +221,8 @@ class Model:
             step: float | None = None, interval: float | None = None, rtol: float | None = None,
             atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
             linear_solver: str | None = None, rho_infinity: float | None = None, reparametrise: bool = False,
-            reactions: bool = False, columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False) -> Result:
+            reactions: bool = False, columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False,
+            **settings: Any) -> Result:
         """Integrates the model and returns a Result.
 
         Args:
@@ -241,6 +243,7 @@ class Model:
             observer: function of the State of each node (each row, with adaptive steps). The run ends if it
                 returns True.
             force: accept a step above the stability limit of a force.
+            **settings: options that integrators of plug-ins declare, such as damping for --damping.
 
         The events of the model are found, see Result.events. One with the action stop ends the run.
 
@@ -255,10 +258,10 @@ class Model:
             NumericalFailure: with the rows up to the failure as attribute `result`.
         """
         core = self._core()
-        outcome = _hilda._run(core, _used(core, integrator), end, step, interval,
-                              _texts(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
-                                     rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise),
-                              force, warn, reactions, [columns] if isinstance(columns, str) else list(columns), observer)
+        settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
+                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
+        outcome = _hilda._run(core, _used(core, integrator), end, step, interval, settings_as_text("run", settings), force,
+                              warn, reactions, [columns] if isinstance(columns, str) else list(columns), observer)
         error = outcome.pop("error")
         findings = outcome.pop("findings")
         result = Result(core, outcome)
@@ -298,12 +301,6 @@ def _used(core: _hilda._Model, integrator: str | type[Integrator]) -> str | Inte
     if isinstance(integrator, type) and issubclass(integrator, Integrator):
         return integrator(_hilda.System(core))
     raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
-
-
-def _texts(*, reparametrise: bool, **settings: Any) -> dict[str, str]:
-    """The settings that are given, as the options of the program"""
-    given = {name.replace("_", "-"): str(value) for name, value in settings.items() if value is not None}
-    return {**given, "reparametrise": ""} if reparametrise else given
 
 
 def integrators() -> dict[str, dict[str, Any]]:

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from . import _hilda
 from ._hilda import State
 from .integrator import Integrator
-from .model import Model, Source, _texts, _used
+from .model import Model, Source, _used
 from .result import Events
+from .settings import settings_as_text
 from .warn import warn
 
 
@@ -23,7 +26,7 @@ class Simulation:
 
     Args:
         model: a Model, or what Model() takes. It does not change: several simulations may have the same one.
-        integrator, step, end, force, and settings from rtol to reparametrise: those of Model.run().
+        integrator, step, end, force, and settings: those of Model.run().
         interval: time from node to node [s] of an integrator with adaptive steps; default: end/1000. It chooses its own
             steps between two nodes. Fixed steps have no interval.
 
@@ -44,13 +47,13 @@ class Simulation:
                  step: float | None = None, end: float | None = None, interval: float | None = None, rtol: float | None = None,
                  atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
                  linear_solver: str | None = None, rho_infinity: float | None = None, reparametrise: bool = False,
-                 force: bool = False) -> None:
+                 force: bool = False, **settings: Any) -> None:
         self.model = model if isinstance(model, Model) else Model(model)
         core = self.model._core()
+        settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
+                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
         self._core = _hilda._Simulation(core, _used(core, integrator), end, step, interval,
-                                        _texts(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
-                                               rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise),
-                                        force, warn)
+                                        settings_as_text("Simulation", settings), force, warn)
 
     def step(self) -> bool:
         """Computes the next node. Returns whether it has computed one: False at the end, and after an event that ends the run.

@@ -342,6 +342,15 @@ private:
     Eigen::VectorXd b, Ct_lambda;
 };
 
+/// The options of lie::Settings that they use
+template <class Coordinates>
+std::vector<std::string> settings_of_half_implicit()
+{
+    std::vector<std::string> all = {"--tolerance", "--max-iterations"};
+    if constexpr (Coordinates::singular_somewhere) all.emplace_back("--reparametrise");
+    return all;
+}
+
 /// Adds both schemes to the list. `coordinates` is the text for their descriptions.
 template <class Coordinates>
 bool register_half_implicit(const std::string& coordinates, const std::string& unknowns)
@@ -353,6 +362,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .order_lambda = 1,
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
+         .uses = settings_of_half_implicit<Coordinates>(),
          .source = "Fang (2022), Secs. 3.5, 3.9",
          .takes = {lie::Feature::history},
          .energy_drifts = true});
@@ -363,6 +373,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .order_lambda = 2,
          .formulation = Coordinates::formulation,
          .unknowns = unknowns,
+         .uses = settings_of_half_implicit<Coordinates>(),
          .source = "Fang (2022), Secs. 3.5, 3.9, half-step start",
          .loads = lie::LoadEvaluation::extrapolated,
          .takes = {lie::Feature::history},

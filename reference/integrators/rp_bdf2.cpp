@@ -56,6 +56,7 @@ const bool registered_rp_bdf2 =
                                   .order_lambda = 2,
                                   .formulation = "rp",
                                   .unknowns = "r'', p'', lambda, lambda_P",
+                                  .uses = {"--tolerance", "--max-iterations"},
                                   .source = "Fang (2022), Sec. 2.1.7, with BDF2",
                                   .loads = lie::LoadEvaluation::implicit,
                                   .takes = {lie::Feature::history}});

@@ -43,6 +43,7 @@ const bool registered_rp_full_1 =
                                    .order_lambda = 1,
                                    .formulation = "rp",
                                    .unknowns = "r'', p'', lambda, lambda_P",
+                                   .uses = {"--tolerance", "--max-iterations"},
                                    .source = "Fang (2022), Sec. 2.1.7",
                                    .loads = lie::LoadEvaluation::implicit,
                                    .takes = {lie::Feature::history}});

@@ -110,10 +110,10 @@ const bool newmark = lie::register_scheme<RpNewmark>(
      .order_lambda = 1,
      .formulation = "rp",
      .unknowns = "r'', p'', lambda, lambda_P",
+     .uses = {"--tolerance", "--max-iterations", "--rho-infinity"},
      .source = "Newmark (1959); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
-     .takes = {lie::Feature::history},
-     .rho_infinity = true});
+     .takes = {lie::Feature::history}});
 const bool hht = lie::register_scheme<RpHht>(
     {.name = "rp-hht",
      .description = "HHT (Hilber, Hughes, Taylor) on Euler parameters, index 3",
@@ -121,10 +121,10 @@ const bool hht = lie::register_scheme<RpHht>(
      .order_lambda = 2,
      .formulation = "rp",
      .unknowns = "r'', p'', lambda, lambda_P",
+     .uses = {"--tolerance", "--max-iterations", "--rho-infinity"},
      .source = "Hilber, Hughes, Taylor (1977); Arnold, Bruls (2007); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
-     .takes = {lie::Feature::history},
-     .rho_infinity = true});
+     .takes = {lie::Feature::history}});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -2,6 +2,7 @@
 #include "run/recording/setting_options.hpp"
 
 #include "io/option_values.hpp"
+#include "lie/schemes.hpp"
 
 #include <algorithm>
 
@@ -9,17 +10,19 @@ namespace hilda::run {
 
 namespace {
 
+using Text = const std::string&;
+
 /// Names of lie::LinearSolver, in its order
 const std::vector<std::string> solvers = {"auto", "klu", "condensed"};
 
-lie::LinearSolver linear_solver(const std::string& option, const std::string& text)
+lie::LinearSolver linear_solver(Text option, Text text)
 {
     const auto at = std::find(solvers.begin(), solvers.end(), text);
     if (at == solvers.end()) io::refuse_option(option, "must be auto, klu or condensed", text);
     return static_cast<lie::LinearSolver>(at - solvers.begin());
 }
 
-double absolute_tolerance(const std::string& option, const std::string& text)
+double absolute_tolerance(Text option, Text text)
 {
     const double value = io::finite_number_in(text);
     if (!(value >= 1e-14 && value <= 0.1))
@@ -27,9 +30,77 @@ double absolute_tolerance(const std::string& option, const std::string& text)
     return value;
 }
 
+/// An option of the member of lie::Settings, with the function that reads its value
+template <class Value, class Read>
+SettingOption option_of(Value lie::Settings::*member, const std::string& name, const std::string& value,
+                        const std::string& help, Read read,
+                        SettingOption::Of of = SettingOption::Of::all_runs)
+{
+    return {{.name = name, .value = value, .help = help, .scope = io::Scope::numerical},
+            [member, read](lie::Settings& s, Text option, Text text) { s.*member = read(option, text); },
+            [member](const lie::Settings& s) { return io::Json(s.*member); },
+            of};
+}
+
+/// The options of several schemes
+std::vector<SettingOption> common_options()
+{
+    const auto given = [](Text, Text) { return true; };
+    std::vector<SettingOption> all = {
+        option_of(&lie::Settings::tolerance, "--tolerance", "EPS",
+                  "bound on the last Newton correction [m, rad, kg m]; default: 1e-10", io::positive_number),
+        option_of(&lie::Settings::max_iterations, "--max-iterations", "N",
+                  "largest number of Newton corrections of a step, before it fails; default: 30",
+                  io::positive_count),
+        {{.name = "--linear-solver",
+          .value = "auto|klu|condensed",
+          .help = "solver of the saddle-point system; default: auto, the one with fewer operations",
+          .scope = io::Scope::numerical},
+         [](lie::Settings& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); },
+         [](const lie::Settings& s) { return io::Json(solvers[static_cast<size_t>(s.linear_solver)]); }},
+        option_of(&lie::Settings::rho_infinity, "--rho-infinity", "RHO",
+                  "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest "
+                  "damping) to 1 (no damping); default: 0.8",
+                  io::fraction),
+        option_of(
+            &lie::Settings::reparametrise, "--reparametrise", "",
+            "change the body frame when Euler angles approach a singular orientation, instead of stopping",
+            given),
+        option_of(
+            &lie::Settings::rtol, "--rtol", "RTOL",
+            "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, rA-radau-5, ida-rp), "
+            "1e-14 to 0.1; default: 1e-10",
+            relative_tolerance, SettingOption::Of::adaptive_steps),
+        option_of(&lie::Settings::atol, "--atol", "ATOL",
+                  "absolute local error tolerance of adaptive steps, 1e-14 to 0.1; default: that of --rtol",
+                  absolute_tolerance, SettingOption::Of::adaptive_steps)};
+    all.back().get = [](const lie::Settings& s) {
+        return s.atol > 0 && s.atol != s.rtol ? io::Json(s.atol) : io::Json("as rtol");
+    };
+    return all;
+}
+
+/// The option of schemes that declare it
+SettingOption option_of_scheme(const lie::SchemeOption& own)
+{
+    const std::string name = own.option.name;
+    const bool is_switch = own.option.is_switch();
+    return {own.option,
+            [name, is_switch, check = own.option.check](lie::Settings& s, Text option, Text text) {
+                if (check != nullptr) check(option, text);
+                s.of_scheme[name] = is_switch ? 1 : io::number(option, text);
+            },
+            [name, is_switch, otherwise = own.default_value](const lie::Settings& s) {
+                const auto given = s.of_scheme.find(name);
+                const double value = given == s.of_scheme.end() ? otherwise : given->second;
+                return is_switch ? io::Json(value != 0) : io::Json(value);
+            },
+            SettingOption::Of::scheme};
+}
+
 }  // namespace
 
-double relative_tolerance(const std::string& option, const std::string& text)
+double relative_tolerance(Text option, Text text)
 {
     const double value = io::finite_number_in(text);
     if (!(value >= 1e-14 && value <= 0.1))
@@ -37,70 +108,42 @@ double relative_tolerance(const std::string& option, const std::string& text)
     return value;
 }
 
-const std::vector<SettingOption>& setting_options()
+std::vector<SettingOption> setting_options()
 {
-    using Text = const std::string&;
-    using io::Json;
-    static const std::vector<SettingOption> all = {
-        {"--tolerance", "EPS", "bound on the last Newton correction [m, rad, kg m]; default: 1e-10",
-         [](auto& s, Text option, Text text) { s.tolerance = io::positive_number(option, text); },
-         [](const auto& s) { return Json(s.tolerance); }},
-        {"--max-iterations", "N",
-         "largest number of Newton corrections of a step, before it fails; default: 30",
-         [](auto& s, Text option, Text text) { s.max_iterations = io::positive_count(option, text); },
-         [](const auto& s) { return Json(s.max_iterations); }},
-        {"--linear-solver", "auto|klu|condensed",
-         "solver of the saddle-point system; default: auto, the one with fewer operations",
-         [](auto& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); },
-         [](const auto& s) { return Json(solvers[static_cast<size_t>(s.linear_solver)]); }},
-        {"--rho-infinity", "RHO",
-         "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest "
-         "damping) to 1 (no damping); default: 0.8",
-         [](auto& s, Text option, Text text) { s.rho_infinity = io::fraction(option, text); },
-         [](const auto& s) { return Json(s.rho_infinity); }},
-        {"--reparametrise", "",
-         "change the body frame when Euler angles approach a singular orientation, instead of stopping",
-         [](auto& s, Text, Text) { s.reparametrise = true; },
-         [](const auto& s) { return Json(s.reparametrise); }},
-        {"--rtol", "RTOL",
-         "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, rA-radau-5, ida-rp), 1e-14 "
-         "to 0.1; "
-         "default: 1e-10",
-         [](auto& s, Text option, Text text) { s.rtol = relative_tolerance(option, text); },
-         [](const auto& s) { return Json(s.rtol); }, true},
-        {"--atol", "ATOL",
-         "absolute local error tolerance of adaptive steps, 1e-14 to 0.1; default: that of --rtol",
-         [](auto& s, Text option, Text text) { s.atol = absolute_tolerance(option, text); },
-         [](const auto& s) { return s.atol > 0 && s.atol != s.rtol ? Json(s.atol) : Json("as rtol"); },
-         true}};
+    std::vector<SettingOption> all = common_options();
+    for (const lie::Scheme& scheme : lie::schemes())
+        for (const lie::SchemeOption& own : scheme.options)
+            if (std::none_of(all.begin(), all.end(), [&](const SettingOption& known) {
+                    return known.of == SettingOption::Of::scheme && known.name == own.option.name;
+                }))
+                all.push_back(option_of_scheme(own));
     return all;
-}
-
-std::string SettingOption::key() const
-{
-    std::string key = name.substr(2);
-    std::replace(key.begin(), key.end(), '-', '_');
-    return key;
 }
 
 std::string SettingOption::text(const lie::Settings& settings) const
 {
-    const io::Json v = value(settings);
+    const io::Json v = get(settings);
     if (const std::string* const word = v.string()) return *word;
     if (const double* const number = v.number()) return io::shortest(*number);
-    return kind.empty() ? "" : io::written(v);
+    return is_switch() ? "" : io::written(v);
 }
 
 bool SettingOption::is_default(const lie::Settings& settings) const
 {
-    return io::written(value(settings)) == io::written(value({}));
+    return io::written(get(settings)) == io::written(get({}));
 }
 
-RunSettings given_settings(const lie::Settings& settings, bool adaptive)
+bool SettingOption::is_recorded(const lie::Scheme& scheme) const
+{
+    return of == Of::all_runs || scheme.uses_option(name);
+}
+
+RunSettings given_settings(const lie::Settings& settings, const lie::Scheme& scheme)
 {
     RunSettings given;
     for (const SettingOption& option : setting_options())
-        if ((adaptive || !option.adaptive) && !option.is_default(settings))
+        if (option.scope == io::Scope::numerical && option.is_recorded(scheme) &&
+            !option.is_default(settings))
             given[option.name] = option.text(settings);
     return given;
 }
@@ -108,16 +151,33 @@ RunSettings given_settings(const lie::Settings& settings, bool adaptive)
 RunSettings with_defaults(RunSettings settings)
 {
     for (const SettingOption& option : setting_options())
-        if (!option.kind.empty()) settings.try_emplace(option.name, option.text({}));
+        if (!option.is_switch() && option.scope == io::Scope::numerical)
+            settings.try_emplace(option.name, option.text({}));
     return settings;
 }
 
-io::Json settings_json(const lie::Settings& settings, bool adaptive)
+io::Json settings_json(const lie::Settings& settings, const lie::Scheme* scheme)
 {
     io::Json all = io::Json::object();
     for (const SettingOption& option : setting_options())
-        if (adaptive || !option.adaptive) all[option.key()] = option.value(settings);
+        if (scheme == nullptr || option.is_recorded(*scheme)) all[option.key()] = option.get(settings);
     return all;
+}
+
+void refuse_unused_settings(const std::string& where, const std::vector<std::string>& given,
+                            const std::vector<const lie::Scheme*>& schemes)
+{
+    for (const SettingOption& option : setting_options()) {
+        if (std::find(given.begin(), given.end(), option.name) == given.end() ||
+            std::any_of(schemes.begin(), schemes.end(),
+                        [&](const lie::Scheme* scheme) { return scheme->uses_option(option.name); }))
+            continue;
+        std::string users;
+        for (const lie::Scheme& scheme : lie::schemes())
+            if (scheme.uses_option(option.name) || scheme.with_adaptive_steps().uses_option(option.name))
+                users += (users.empty() ? "" : ", ") + scheme.name;
+        throw io::UsageError(where + ": no selected integrator uses " + option.name + "; it is for " + users);
+    }
 }
 
 }  // namespace hilda::run

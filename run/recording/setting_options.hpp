@@ -1,45 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The options that set lie::Settings, in one table. The command lines, their help, the identity of
-/// checkpoints and of the jobs of a study, the settings in summary.json and study.json, and the keywords of
-/// Python come from it.
+/// The options that set lie::Settings, in one table: those of several schemes, and those that registered
+/// schemes declare (lie::Scheme::options). The command lines, their help, the identity of checkpoints and of
+/// the jobs of a study, the settings in summary.json and study.json, and the keywords of Python come from it.
 
 #pragma once
 
 #include "io/json.hpp"
+#include "io/option_values.hpp"
 #include "lie/settings.hpp"
 #include "run/recording/run_settings.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+struct Scheme;
+}
+
 namespace hilda::run {
 
-struct SettingOption {
-    std::string name;  ///< --max-iterations
-    std::string kind;  ///< of its value: N; "" for a switch
-    std::string what;  ///< for the help
+struct SettingOption : io::Option {
     /// Sets the value from the text. io::UsageError if it is not valid.
-    void (*set)(lie::Settings& settings, const std::string& option, const std::string& text);
-    io::Json (*value)(const lie::Settings& settings);
-    bool adaptive = false;  ///< used with adaptive steps only
+    std::function<void(lie::Settings& settings, const std::string& option, const std::string& text)> set;
+    std::function<io::Json(const lie::Settings& settings)> get;
+    /// The runs whose summary.json and checkpoint record it
+    enum class Of { all_runs, adaptive_steps, scheme } of = Of::all_runs;
 
-    /// max_iterations: the key in JSON
-    std::string key() const;
     /// The value as the option takes it; "" for a switch
     std::string text(const lie::Settings& settings) const;
     /// Whether the value is that of a run without the option
     bool is_default(const lie::Settings& settings) const;
+    /// Whether it is recorded for runs of the scheme
+    bool is_recorded(const lie::Scheme& scheme) const;
 };
 
-/// All of them. Results depend on each one.
-const std::vector<SettingOption>& setting_options();
+/// All of them. A plug-in that is loaded later may add some.
+std::vector<SettingOption> setting_options();
 
-/// The settings that are not the defaults, by option: what checkpoints and the jobs of a study record
-RunSettings given_settings(const lie::Settings& settings, bool adaptive);
+/// The settings on which results depend and that are not the defaults, by option: what a checkpoint records
+RunSettings given_settings(const lie::Settings& settings, const lie::Scheme& scheme);
 /// The settings of a run with the default values of the options that are not among them, for comparisons
 RunSettings with_defaults(RunSettings settings);
-/// All settings with their values, by key; those of adaptive steps only for such a run
-io::Json settings_json(const lie::Settings& settings, bool adaptive);
+/// The settings with their values, by key: all, or those recorded for a scheme
+io::Json settings_json(const lie::Settings& settings, const lie::Scheme* scheme = nullptr);
+
+/// io::UsageError "WHERE: ..." if an option of the table that was given is used by none of the schemes; the
+/// message names the schemes that use it.
+void refuse_unused_settings(const std::string& where, const std::vector<std::string>& given,
+                            const std::vector<const lie::Scheme*>& schemes);
 
 /// A relative tolerance: 1e-14 <= value <= 0.1. Smaller tolerances are below the rounding errors of double
 /// precision.

@@ -29,7 +29,7 @@ void check_step_options(const lie::Scheme& scheme, const std::vector<std::string
         throw io::UsageError("run: " + scheme.name + " " + why);
     };
     for (const std::string& option : settings)
-        if (has_step && scheme.adaptive_form && (option == "--rtol" || option == "--atol"))
+        if (has_step && !scheme.uses_option(option) && scheme.with_adaptive_steps().uses_option(option))
             refuse("has a fixed step with --step, and adaptive steps with " + option + "; give one of them");
     if (!scheme.adaptive) return;
     if (has_step) refuse("chooses its own steps by --rtol and --atol; --step is for fixed-step schemes");

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/study.hpp"
 
-#include "io/error.hpp"
-#include "lie/schemes.hpp"
-
-#include <algorithm>
 #include <utility>
 
 namespace hilda::studies {
@@ -19,32 +15,7 @@ std::vector<Maker>& makers()
     return all;
 }
 
-/// Whether a scheme uses an option of lie::Settings
-bool uses(const lie::Scheme& scheme, const std::string& option)
-{
-    if (option == "--rtol" || option == "--atol") return scheme.adaptive;
-    if (option == "--max-iterations") return !scheme.adaptive || scheme.formulation == "rA";
-    if (option == "--rho-infinity") return scheme.rho_infinity;
-    if (option == "--reparametrise") return scheme.formulation == "reps";
-    return true;
-}
-
 }  // namespace
-
-void refuse_unused_settings(const std::string& where, const std::vector<std::string>& given,
-                            const std::vector<const lie::Scheme*>& schemes)
-{
-    for (const std::string& option : given) {
-        if (std::any_of(schemes.begin(), schemes.end(),
-                        [&](const lie::Scheme* scheme) { return uses(*scheme, option); }))
-            continue;
-        std::string users;
-        for (const lie::Scheme& scheme : lie::schemes())
-            if (uses(scheme, option) || uses(scheme.with_adaptive_steps(), option))
-                users += (users.empty() ? "" : ", ") + scheme.name;
-        throw io::UsageError(where + ": no selected integrator uses " + option + "; it is for " + users);
-    }
-}
 
 const std::vector<Study>& studies()
 {

@@ -14,10 +14,6 @@
 #include <string>
 #include <vector>
 
-namespace hilda::lie {
-struct Scheme;
-}
-
 namespace hilda::studies {
 
 /// Expected value of a result: --expect KEY=VALUE[+-TOL]
@@ -127,11 +123,6 @@ struct Study {
 extern template class hilda::io::Registry<hilda::studies::Study>;
 
 namespace hilda::studies {
-
-/// io::UsageError "WHERE: ..." if an option of lie::Settings that was given (--rtol, --atol, --rho-infinity,
-/// --reparametrise) is used by none of the schemes; the message names the schemes that use it.
-void refuse_unused_settings(const std::string& where, const std::vector<std::string>& given,
-                            const std::vector<const lie::Scheme*>& schemes);
 
 /// All registered studies, sorted by name. A file adds one by io::Registry<Study>::add.
 const std::vector<Study>& studies();

@@ -66,7 +66,7 @@ run::FinishedJobs::Identity identity(const std::string& study, const StudyOption
                                        {"--shard", o.shard.is_part() ? o.shard.text() : ""},
                                        {"plug-ins (--load)", o.plugins.empty() ? "none" : joined(o.plugins)}};
     for (const run::SettingOption& setting : run::setting_options())
-        all[setting.name] = io::written(setting.value(o.settings));
+        all[setting.name] = io::written(setting.get(o.settings));
     constexpr size_t most = 64 << 20;  // as for a model file
     std::error_code error;             // of names that the file system does not accept
     for (const std::string& problem : o.problems)
@@ -135,14 +135,13 @@ Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
         if (defaults.empty())
             for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
     }
-    const auto& given = options.given_settings;
     for (const lie::Scheme*& scheme : selected)
-        if (std::any_of(given.begin(), given.end(),
-                        [](const std::string& name) { return name == "--rtol" || name == "--atol"; }))
-            scheme = &scheme->with_adaptive_steps();
+        for (const std::string& option : options.given_settings)
+            if (!scheme->uses_option(option) && scheme->with_adaptive_steps().uses_option(option))
+                scheme = &scheme->with_adaptive_steps();
     Schemes users = selected;
     if (!options.reference.empty()) users.push_back(&lie::scheme(options.reference).with_adaptive_steps());
-    refuse_unused_settings("study " + name, options.given_settings, users);
+    run::refuse_unused_settings("study " + name, options.given_settings, users);
     return selected;
 }
 
@@ -247,7 +246,7 @@ io::Json StudyContext::whole() const
 {
     io::Json all = {{"study", name},
                     {"tolerance", options.settings.tolerance},
-                    {"settings", run::settings_json(options.settings, true)},
+                    {"settings", run::settings_json(options.settings)},
                     {"seed", options.seed.value_or(0)},
                     {"set", options.set},
                     {"provenance", run::provenance(options.command_line, options.jobs)}};

@@ -398,6 +398,17 @@ private:
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 
+/// Throws io::NotAvailable if a plug-in declares an option that a command already has.
+std::shared_ptr<Commands> commands_with(const std::vector<std::string>& plugins, const std::string& text)
+{
+    try {
+        return std::make_shared<Commands>(text, plugins);
+    } catch (const CLI::OptionAlreadyAdded& error) {
+        throw io::NotAvailable(std::string("--load: a plug-in declares an option that a command has: ") +
+                               error.what());
+    }
+}
+
 /// The action refers to `commands`, and keeps it.
 std::function<int()> action_of(const std::shared_ptr<Commands>& commands, int argc, char** argv)
 {
@@ -415,7 +426,7 @@ int command_line(int argc, char** argv)
 {
     std::vector<char*> words;
     const std::vector<std::string> plugins = load_plugins({argv, argv + argc}, words);
-    const auto commands = std::make_shared<Commands>(io::shell_quoted(argc, argv), plugins);
+    const auto commands = commands_with(plugins, io::shell_quoted(argc, argv));
     std::function<int()> action;
     try {
         action = action_of(commands, static_cast<int>(words.size()), words.data());

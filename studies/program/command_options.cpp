@@ -38,11 +38,11 @@ void add_settings(CLI::App& command, lie::Settings& settings, std::vector<std::s
             given.push_back(name);
             read(settings, name, text);
         };
-        if (option.kind.empty())
+        if (option.is_switch())
             command.add_flag_callback(
-                option.name, [note, name = option.name] { note(name, ""); }, option.what);
+                option.name, [note, name = option.name] { note(name, ""); }, option.help);
         else
-            value(command, option.name, option.kind, option.what, note);
+            value(command, option.name, option.value, option.help, note);
     }
 }
 

@@ -12,8 +12,8 @@
 #include "run/figures.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
+#include "run/recording/setting_options.hpp"
 #include "run/watch/run_check.hpp"
-#include "studies/framework/study.hpp"
 #include "studies/framework/table.hpp"
 #include "studies/program/plot.hpp"
 
@@ -159,7 +159,7 @@ run::FitProblem problem_of(const FitOptions& options)
     const lie::Scheme* scheme = &lie::scheme(options.integrator);
     if (!options.step) scheme = &scheme->with_adaptive_steps();
     run::check_step_options(*scheme, options.given_settings, options.step.has_value(), {});
-    refuse_unused_settings("fit", options.given_settings, {scheme});
+    run::refuse_unused_settings("fit", options.given_settings, {scheme});
     run::FitProblem problem{.read =
                                 [&options](std::span<const std::string> changes) {
                                     std::vector<std::string> all = options.set;

@@ -126,6 +126,7 @@ int list_integrators(bool json)
                            {"takes", lie::keys(s.takes)},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
+                           {"options", s.with_adaptive_steps().option_names()},
                            {"source", s.source}});
         std::cout << all.text();
         return io::exit_code::done;

@@ -6,9 +6,9 @@
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "run/named_model.hpp"
+#include "run/recording/setting_options.hpp"
 #include "run/single_run.hpp"
 #include "run/watch/run_check.hpp"
-#include "studies/framework/study.hpp"
 
 #include <iostream>
 
@@ -59,7 +59,7 @@ int run_model(const run::RunOptions& options)
     refuse_for_adaptive(options);
     std::vector<const lie::Scheme*> schemes;
     for (const std::string& name : options.integrators) schemes.push_back(&scheme_of(name, options));
-    refuse_unused_settings("run", options.given_settings, schemes);
+    run::refuse_unused_settings("run", options.given_settings, schemes);
     const std::vector<std::string> directory = directories(options);
     const io::Interrupt interrupt;
     int code = io::exit_code::done;

@@ -24,8 +24,12 @@ PROGRAM = os.environ["HILDA_PROGRAM"]
 class Settings(unittest.TestCase):
     def test_each_setting_of_the_program_is_a_keyword(self):
         keywords = inspect.signature(hilda.Model.run).parameters
-        self.assertEqual([name for name in _hilda.setting_names if name not in keywords], [])
-        self.assertIn("reparametrise", _hilda.setting_names)
+        self.assertEqual([name for name in _hilda.setting_names() if name not in keywords], [])
+        self.assertIn("reparametrise", _hilda.setting_names())
+
+    def test_an_unknown_setting(self):
+        with self.assertRaisesRegex(hilda.UsageError, "run: unknown keys damp; known settings are atol, "):
+            hilda.run("double_pendulum", damp=1)
 
     def test_euler_angles_at_a_singular_orientation(self):
         # the Euler angle phi of the crank is 0 at 0.236 s

@@ -43,6 +43,7 @@ inline const lie::Scheme inner_steps = {
     .order_lambda = 2,
     .formulation = "rA",
     .unknowns = "",
+    .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rtol", "--atol"},
     .source = "",
     .adaptive = true,
     .construct = [](const lie::System& s, const lie::Settings& settings) -> std::unique_ptr<lie::Integrator> {

@@ -218,3 +218,106 @@ TEST_CASE("the damping of rp-newmark and rp-hht at infinite frequency is that of
         CHECK(of_step <= 1.01 * std::pow(2., 2 / 30.) * rho);
     }
 }
+
+namespace {
+
+/// Distance of two nodes [s], and the rtol of adaptive steps
+struct Resolution {
+    double h, rtol;
+};
+
+/// The numbers of the states that a scheme computes until `end`, or until it fails
+std::vector<double> computed(const lie::Scheme& scheme, const lie::System& system, lie::State x,
+                             lie::Settings settings, const Resolution& resolution, double end)
+{
+    if (settings.rtol == lie::Settings().rtol) settings.rtol = resolution.rtol;
+    const auto integrator = scheme.make(system, settings);
+    std::vector<double> numbers;
+    const auto add = [&](const auto& of) { numbers.insert(numbers.end(), of.data(), of.data() + of.size()); };
+    try {
+        while (x.t < end) {
+            integrator->step(x, resolution.h);
+            for (const lie::Motion& body : x.body)
+                add(body.r), add(body.A), add(body.rdot), add(body.omega_bar);
+            add(x.lambda);
+        }
+    } catch (const lie::NumericalFailure&) {
+        numbers.push_back(0);
+    }
+    return numbers;
+}
+
+struct OtherValues {
+    std::string option;
+    std::vector<lie::Settings> settings;
+    double end = 0.2;  ///< [s]
+};
+
+/// Values of each option other than the default. The Euler angles of the crank are singular at 0.236 s.
+const std::vector<OtherValues> other_values = {
+    {"--tolerance", {{.tolerance = 1e-3}, {.tolerance = 1e-13}}},
+    {"--max-iterations", {{.max_iterations = 1}, {.max_iterations = 2}}},
+    {"--linear-solver",
+     {{.linear_solver = lie::LinearSolver::klu}, {.linear_solver = lie::LinearSolver::condensed}}},
+    {"--rho-infinity", {{.rho_infinity = 0.6}}},
+    {"--reparametrise", {{.reparametrise = true}}, 0.3},
+    {"--rtol", {{.rtol = 1e-6}}},
+    {"--atol", {{.atol = 1e-6}}}};
+
+}  // namespace
+
+TEST_CASE("an option of the settings has an effect on exactly the schemes that list it",
+          "[reference][schemes]")
+{
+    struct Case {
+        const lie::System& system;
+        lie::State start;
+        Resolution resolution;
+    };
+    const tests::SpinningTop top;
+    dae::Model mechanism;
+    lie::State start;
+    tests::slider_crank(mechanism, start);
+    dae::start(mechanism, start);
+    const std::vector<Case> cases = {
+        {mechanism, start, {2e-2, 1e-10}}, {mechanism, start, {0.1, 1e-4}}, {top, top.start(), {0.1, 1e-4}}};
+    for (const lie::Scheme& scheme : lie::schemes())
+        for (const lie::Scheme* form :
+             {&scheme, static_cast<const lie::Scheme*>(scheme.adaptive_form.get())}) {
+            if (form == nullptr) continue;
+            for (const OtherValues& other : other_values) {
+                CAPTURE(form->name, form->adaptive, other.option);
+                bool has_effect = false;
+                for (const Case& c : cases) {
+                    const auto with = [&](const lie::Settings& settings) {
+                        return computed(*form, c.system, c.start, settings, c.resolution, other.end);
+                    };
+                    for (const lie::Settings& settings : other.settings)
+                        has_effect = has_effect || with(settings) != with({});
+                }
+                CHECK(has_effect == form->uses_option(other.option));
+            }
+        }
+}
+
+TEST_CASE("an option that a scheme declares reaches its constructor, by default with its default value",
+          "[reference][schemes]")
+{
+    static std::vector<double> seen;
+    lie::Scheme scheme = lie::scheme("rA-half-1");
+    scheme.options = {{{.name = "--twist", .value = "T", .help = "none"}, 0.25},
+                      {{.name = "--sharp", .help = "none"}}};
+    scheme.construct = [](const lie::System& system, const lie::Settings& settings) {
+        for (const auto& [name, value] : settings.of_scheme) seen.push_back(value);
+        return lie::scheme("rA-half-1").make(system, settings);
+    };
+    const tests::SpinningTop top;
+    scheme.make(top, {});
+    scheme.make(top, {.of_scheme = {{"--twist", 3}, {"--sharp", 1}}});
+    CHECK(seen == std::vector<double>{0, 0.25, 1, 3});  // in the order of the names
+    CHECK_THROWS_WITH(scheme.make(top, {.of_scheme = {{"--twist", std::nan("")}}}),
+                      Catch::Contains("--twist must be finite"));
+    scheme.name = "another";
+    scheme.options = {{{.name = "twist", .help = "none"}}};
+    CHECK_THROWS_WITH(lie::add_scheme(scheme), Catch::Contains("must begin with --, got twist"));
+}

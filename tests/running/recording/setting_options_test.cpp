@@ -2,11 +2,13 @@
 #include "run/recording/setting_options.hpp"
 
 #include "io/error.hpp"
+#include "lie/schemes.hpp"
 #include "tests/support/program/program.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <map>
+#include <set>
 
 using namespace hilda;
 using namespace hilda::tests;
@@ -28,7 +30,9 @@ TEST_CASE("each setting is written as its option takes it, and is recorded unles
 {
     REQUIRE(other.size() == setting_options().size());
     const lie::Settings defaults;
-    CHECK(run::given_settings(defaults, true).empty());
+    const lie::Scheme &fixed = lie::scheme("rA-half-1"),
+                      &adaptive = lie::scheme("rA-dop853").with_adaptive_steps();
+    CHECK(run::given_settings(defaults, adaptive).empty());
     for (const run::SettingOption& option : setting_options()) {
         CAPTURE(option.name);
         CHECK(option.is_default(defaults));
@@ -36,9 +40,12 @@ TEST_CASE("each setting is written as its option takes it, and is recorded unles
         option.set(settings, option.name, other.at(option.name));
         CHECK_FALSE(option.is_default(settings));
         CHECK(option.text(settings) == other.at(option.name));
-        CHECK(run::given_settings(settings, true) == run::RunSettings{{option.name, other.at(option.name)}});
-        CHECK(run::given_settings(settings, false).empty() == option.adaptive);
-        CHECK(run::settings_json(settings, true).member(option.key()) != nullptr);
+        const bool is_adaptive = option.of == run::SettingOption::Of::adaptive_steps;
+        CHECK(run::given_settings(settings, adaptive) ==
+              run::RunSettings{{option.name, other.at(option.name)}});
+        CHECK(run::given_settings(settings, fixed).empty() == is_adaptive);
+        CHECK(run::settings_json(settings).member(option.key()) != nullptr);
+        CHECK((run::settings_json(settings, &fixed).member(option.key()) == nullptr) == is_adaptive);
     }
     // Checkpoints of version 0.2.0 have some settings with their default values.
     CHECK(run::with_defaults({{"--tolerance", "1e-10"}, {"--linear-solver", "klu"}}) ==
@@ -66,25 +73,41 @@ TEST_CASE(
         CAPTURE(option.name);
         CHECK_THAT(help_of_run, Contains(option.name));
         CHECK_THAT(help_of_fit, Contains(option.name));
-        CHECK_THAT(option.adaptive ? adaptive : fixed, Contains('"' + option.key() + '"'));
+        const bool is_adaptive = option.of == run::SettingOption::Of::adaptive_steps;
+        CHECK_THAT(is_adaptive ? adaptive : fixed, Contains('"' + option.key() + '"'));
         std::vector<std::string> given = {option.name};
-        if (!option.kind.empty()) given.push_back(other.at(option.name));
+        if (!option.is_switch()) given.push_back(other.at(option.name));
         // A resumed run with another value, unless no run with this integrator takes the option
         const bool refused_here = option.name == "--rho-infinity" || option.name == "--reparametrise";
-        const Ended resumed =
-            call(in, with(option.adaptive ? std::vector<std::string>{"run", "double_pendulum", "--integrator",
-                                                                     "rA-dop853", "--end", "0.2", "--resume",
-                                                                     "--output", "adaptive"}
-                                          : std::vector<std::string>{"run", "double_pendulum", "--end", "0.2",
-                                                                     "--resume", "--output", "fixed"},
-                          given));
+        const Ended resumed = call(
+            in,
+            with(is_adaptive ? std::vector<std::string>{"run", "double_pendulum", "--integrator", "rA-dop853",
+                                                        "--end", "0.2", "--resume", "--output", "adaptive"}
+                             : std::vector<std::string>{"run", "double_pendulum", "--end", "0.2", "--resume",
+                                                        "--output", "fixed"},
+                 given));
         CHECK(resumed.code == 2);
         CHECK_THAT(resumed.err, Contains(refused_here ? option.name : "belongs to another run"));
-        if (option.adaptive || refused_here) continue;  // the study has a fixed step and rA schemes
+        if (is_adaptive || refused_here) continue;  // the study has a fixed step and rA schemes
         fs::remove_all(in / "s2");
         REQUIRE(call(in, with(with(study, {"--shard", "2/2", "--output", "s2"}), given)).code == 0);
         const Ended collected = call(in, {"collect", "s1", "s2", "--output", "all", "--no-plot"});
         CHECK(collected.code == 2);
         CHECK_THAT(collected.err, Contains("the shards differ in " + option.name));
     }
+}
+
+TEST_CASE("the options that a scheme uses are in the table", "[run][settings]")
+{
+    std::set<std::string> known;
+    for (const run::SettingOption& option : setting_options()) known.insert(option.name);
+    for (const lie::Scheme& scheme : lie::schemes())
+        for (const lie::Scheme* form : {&scheme, &scheme.with_adaptive_steps()})
+            for (const std::string& option : form->option_names()) {
+                CAPTURE(form->name, option);
+                CHECK(known.contains(option));
+                CHECK_NOTHROW(run::refuse_unused_settings("run", {option}, {form}));
+            }
+    for (const std::string& option : known)
+        CHECK_THROWS_AS(run::refuse_unused_settings("run", {option}, {}), io::UsageError);
 }

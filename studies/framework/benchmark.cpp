@@ -5,6 +5,7 @@
 #include "dae/model_file.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 

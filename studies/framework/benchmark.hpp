@@ -4,12 +4,13 @@
 #pragma once
 
 #include "studies/framework/errors.hpp"
-#include "studies/framework/study.hpp"
 
 #include <functional>
 #include <memory>
 
 namespace hilda::studies {
+
+struct StudyOptions;
 
 struct Benchmark {
     Problem problem;

@@ -127,15 +127,15 @@ std::vector<double> PublishedGrid::values(const std::vector<std::pair<double, do
 
 void compare_with_published(StudyContext& s, const std::vector<NamedCurve>& curves)
 {
-    const std::vector<ColumnMatch> found = matches(io::read_csv_table(s.options.against), curves);
+    const std::vector<ColumnMatch> found = matches(io::read_csv_table(s.against), curves);
     double largest = 0;
     for (const ColumnMatch& m : found)
         if (m.nearest) largest = std::max(largest, m.relative());
-    s.measured.push_back({.of = s.options.against, .value = {{"difference", largest}}});
+    s.measured.push_back({.of = s.against, .value = {{"difference", largest}}});
     s.text << fmt::format(
         "\ncomparison with {}: each column with every run that has the quantity; * marks the nearest "
         "run\n",
-        s.options.against);
+        s.against);
     columns_of_matches.print(s.text, found);
     s.text << fmt::format("largest difference of the nearest runs, relative to the column size: {:.2e}\n",
                           largest);

@@ -10,6 +10,7 @@
 #include "run/diagnosis.hpp"
 #include "run/jobs/pool.hpp"
 #include "run/simulation.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 

@@ -65,14 +65,14 @@ double seconds_of_march(const Run& run, const lie::Settings& of_study)
 
 void time_in_turn(const StudyContext& study, const std::vector<TimedRun*>& runs)
 {
-    const int repeats = study.options.repeats;
+    const int repeats = study.repeats;
     const size_t count = runs.size();
     for (TimedRun* run : runs) run->repeat.assign(run->failed() ? 0 : repeats, 0);
     study.pool(count * repeats)
         .run(
             [&](long k) {
                 TimedRun& run = *runs[k % count];
-                if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, study.options.settings);
+                if (!run.failed()) run.repeat[k / count] = seconds_of_march(run, study.settings);
             },
             [&](io::Archive& a, long k) {
                 if (!runs[k % count]->failed()) a.value(runs[k % count]->repeat[k / count]);

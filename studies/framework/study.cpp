@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/framework/study.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace hilda::studies {
@@ -16,6 +17,25 @@ std::vector<Maker>& makers()
 }
 
 }  // namespace
+
+OptionNames options_of_integrators(const OptionNames& more)
+{
+    OptionNames all = {"--integrator", "--steps", "--end"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+OptionNames options_of_models(const OptionNames& more)
+{
+    OptionNames all = options_of_integrators(more);
+    all.emplace_back("--problem");
+    return all;
+}
+
+bool Study::lists(const std::string& option) const
+{
+    return std::find(options.begin(), options.end(), option) != options.end();
+}
 
 const std::vector<Study>& studies()
 {

@@ -20,6 +20,8 @@
 
 namespace hilda::studies {
 
+struct StudyOptions;
+
 using Schemes = std::vector<const lie::Scheme*>;
 
 /// Results of one part of a study, by the keys of --expect
@@ -30,16 +32,25 @@ struct Measured {
 
 class StudyContext {
 public:
-    /// Opens the file of the finished jobs in the output directory. io::UsageError for a key of --expect that
-    /// the study does not have, for --vtk without a directory, and for --resume with other options than the
-    /// interrupted study.
-    ///
-    /// `collected`: the results of all runs, from shards; nullptr: they are computed.
-    StudyContext(const Study& study, const StudyOptions& options, const run::JobRecords* collected = nullptr);
+    /// `finished`: keeps the results of jobs; nullptr: none are kept. All arguments must outlive this object.
+    StudyContext(const Study& study, const StudyOptions& options, run::FinishedJobs* finished = nullptr);
 
     const std::string& name;
     const std::vector<std::string>& keys;  ///< of --expect
+
+    // Options that many studies read; the others are in `options`.
     const StudyOptions& options;
+    const lie::Settings& settings;
+    const std::vector<std::string>& problems;  ///< of --problem
+    const std::vector<std::string>& set;       ///< /json/pointer=VALUE
+    const std::string& output;                 ///< existing output directory; "": no files
+    const std::string& against;                ///< a CSV file to compare with; "": none
+    const std::string& grid;                   ///< name of a parameter grid; "": the default
+    const int jobs_at_once, repeats;           ///< of --jobs and --repeats
+    const bool check, quiet;
+
+    /// Whether the command line has the option with this name
+    bool is_given(const std::string& option) const;
 
     /// io::UsageError "study NAME: what"
     [[noreturn]] void refuse(const std::string& what) const;
@@ -98,26 +109,13 @@ public:
     /// Prints the acceptance criteria and adds them to study.json. With --check the study fails if one fails.
     void evaluate(const std::vector<Criterion>& criteria);
 
-    /// Prints the text, writes the files and draws the figures. Returns the exit code: 4 if all runs failed
-    /// (or one, see every_run_must_succeed), 6 if an expectation or, with --check, a criterion failed. The
-    /// common keys of study.json are study, tolerance, settings, seed, set, provenance and, if
-    /// options.repeats > 0, repeats.
-    int finish();
-    /// The end of one of several shards: its results are complete for hilda collect. Returns the exit code.
-    int finish_shard();
+    // Failures, as texts; empty if no run failed, or not enough for exit code 4
+    std::string failed_runs;        ///< for stdout
+    std::string numerical_failure;  ///< for stderr
 
 private:
-    io::Json whole() const;
-    void write(const io::Json& whole_json) const;
-    bool as_expected() const;
-
-    std::string latex_tables() const;
-
-    const std::string& answers;  ///< of the study
-    std::string failed_runs,
-        numerical_failure;  ///< texts; empty if no run failed, or not enough for exit code 4
-    std::unique_ptr<run::FinishedJobs> finished;  ///< nullptr without an output directory
-    std::unique_ptr<run::JobSharing> sharing;     ///< of the pools
+    run::FinishedJobs* const finished;
+    const std::unique_ptr<run::JobSharing> sharing;  ///< of the pools
 };
 
 /// io::UsageError "study NAME: unknown WHAT 'x'; did you mean ...?" for a name of --problem that is not known
@@ -133,7 +131,7 @@ std::vector<const Part*> selected_parts(const StudyContext& study, const std::st
     for (const Part& part : parts) known.push_back(part.name);
     check_parts(study, what, known);
     std::vector<const Part*> selected;
-    const std::vector<std::string>& names = study.options.problems;
+    const std::vector<std::string>& names = study.problems;
     for (const Part& part : parts)
         if (names.empty() || std::find(names.begin(), names.end(), part.name) != names.end())
             selected.push_back(&part);
@@ -153,25 +151,27 @@ const Named& one_of_list(const std::string& option, const std::string& name, con
 }
 
 /// Options of a study of scenes over a grid of parameters: the step h and the end of a run [s], the preset of
-/// the friction laws, and the grid
-template <class Grid>
-struct GridOptions {
+/// the friction laws
+struct SceneOptions {
     double h, end;
     std::string preset;
-    const Grid& grid;
 
     bool dissertation() const { return preset == "dissertation"; }
 };
-/// These options, with defaults; the defaults of --preset and --grid are `dissertation` and the first grid.
-/// They become the first keys of study.json.
+/// These options, with defaults; the default of --preset is `dissertation`. With the name of the grid they
+/// become the first keys of study.json.
+SceneOptions scene_options(StudyContext& s, double h, double end, const std::string& grid);
+
+/// The same and the grid, by default the first one
+template <class Grid>
+struct GridOptions : SceneOptions {
+    const Grid& grid;
+};
 template <class Grid>
 GridOptions<Grid> grid_options(StudyContext& s, double h, double end, const std::vector<Grid>& grids)
 {
-    GridOptions<Grid> o{s.one_step(h), s.options.end.value_or(end),
-                        s.options.preset.empty() ? "dissertation" : s.options.preset,
-                        one_of_list("--grid", s.options.grid, grids)};
-    s.json = {{"preset", o.preset}, {"h", o.h}, {"end", o.end}, {"grid", o.grid.name}};
-    return o;
+    const Grid& grid = one_of_list("--grid", s.grid, grids);
+    return {scene_options(s, h, end, grid.name), grid};
 }
 
 }  // namespace hilda::studies

@@ -5,6 +5,7 @@
 #include "lie/schemes.hpp"
 #include "run/figures.hpp"
 #include "run/frames/vtk.hpp"
+#include "studies/framework/study_options.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
 #include <fmt/format.h>

@@ -5,13 +5,15 @@
 
 #include "io/nearest.hpp"
 #include "io/option_values.hpp"
+#include "run/jobs/shard.hpp"
 #include "run/recording/setting_options.hpp"
-#include "studies/framework/study.hpp"
 
 #include <string>
 #include <vector>
 
 namespace hilda::studies {
+
+struct Expectation;
 
 using io::fraction;
 using io::list;

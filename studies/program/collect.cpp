@@ -119,15 +119,15 @@ void add_collect_options(CLI::App& c, CollectOptions& o)
     c.add_option("DIR", o.directories, "output directories of all shards of a study")
         ->required()
         ->type_name("");
-    add_output(c, "--force", "out/KIND", o.study.output);
-    c.add_flag("--force", o.study.force, "overwrite an output directory that is not empty");
+    add_output(c, "--force", "out/KIND", o.study.options.output);
+    c.add_flag("--force", o.study.options.force, "overwrite an output directory that is not empty");
     values(c, "--expect", "KEY=VALUE[+-TOL]",
            "expected value of a result; exit code 6 if the result differs by more than TOL; repeatable",
-           append_one(o.study.expect, expectation));
+           append_one(o.study.options.expect, expectation));
     add_no_plot(c, "draw no figures", o.study.plot);
     add_figure_format(c, o.study.figure_formats);
     c.add_flag("--latex", o.study.latex, "write study.tex as well: the tables of the text for LaTeX");
-    c.add_flag("--quiet", o.study.quiet, "print no result and no warnings");
+    c.add_flag("--quiet", o.study.options.quiet, "print no result and no warnings");
     c.add_flag("--json", o.study.json, "print the result as JSON on stdout");
 }
 
@@ -184,23 +184,24 @@ std::vector<std::string> words_of(const run::JobRecords& shards)
 }
 
 int collect(const CollectOptions& collected, const run::JobRecords& shards, const std::string& kind,
-            StudyOptions options)
+            StudyArguments arguments)
 {
-    const StudyOptions& of = collected.study;
+    const StudyArguments& of = collected.study;
+    arguments.plot = of.plot;
+    arguments.figure_formats = of.figure_formats;
+    arguments.draw = draw_figures;
+    arguments.latex = of.latex;
+    arguments.json = of.json;
+    StudyOptions& options = arguments.options;
     options.shard = {};
-    options.output = of.output;
-    options.force = of.force;
+    options.output = of.options.output;
+    options.force = of.options.force;
     options.resume = false;
-    options.plot = of.plot;
-    options.figure_formats = of.figure_formats;
-    options.draw = draw_figures;
-    options.latex = of.latex;
-    options.quiet = of.quiet;
-    options.json = of.json;
-    options.expect.insert(options.expect.end(), of.expect.begin(), of.expect.end());
-    const std::string to = options.output.empty() && !options.json ? "out/" + kind : options.output;
+    options.quiet = of.options.quiet;
+    options.expect.insert(options.expect.end(), of.options.expect.begin(), of.options.expect.end());
+    const std::string to = options.output.empty() && !arguments.json ? "out/" + kind : options.output;
     if (!to.empty()) refuse_output_in_shard(to, collected.directories);
-    const int code = run_collected(kind, options, shards);
+    const int code = run_collected(kind, arguments, shards);
     if (!to.empty())
         for (const std::string& directory : collected.directories) copy_other_files(directory, to);
     return code;

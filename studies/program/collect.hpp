@@ -4,7 +4,7 @@
 #pragma once
 
 #include "run/jobs/finished_jobs.hpp"
-#include "studies/framework/study.hpp"
+#include "studies/program/study_option_table.hpp"
 
 #include <functional>
 #include <string>
@@ -19,7 +19,7 @@ namespace hilda::studies {
 
 struct CollectOptions {
     std::vector<std::string> directories;  ///< of the shards
-    StudyOptions study;                    ///< those of the output
+    StudyArguments study;                  ///< those of the results
 };
 
 void add_collect_options(CLI::App& command, CollectOptions& to);
@@ -33,9 +33,9 @@ run::JobRecords read_shards(const std::vector<std::string>& directories);
 std::vector<std::string> words_of(const run::JobRecords& shards);
 
 /// Writes study.csv, study.json and the figures, as the study writes them, and copies the other files of the
-/// shards, such as the motions of --keep. `kind` and `options` are those of the command line of the shards.
+/// shards, such as the motions of --keep. `kind` and `arguments` are those of the command line of the shards.
 /// Returns the exit code.
 int collect(const CollectOptions& collected, const run::JobRecords& shards, const std::string& kind,
-            StudyOptions options);
+            StudyArguments arguments);
 
 }  // namespace hilda::studies

@@ -87,7 +87,7 @@ public:
     std::function<int()> parse(int argc, char** argv)
     {
         refuse_unknown_command(argc, argv);
-        study.arguments.assign(argv + 1, argv + argc);
+        study.words.assign(argv + 1, argv + argc);
         try {
             app.parse(argc, argv);
         } catch (const CLI::CallForHelp&) {
@@ -383,7 +383,7 @@ private:
     run::CosimOptions cosim;
     run::KinematicsOptions kinematics, inverse;
     run::CheckOptions check;
-    StudyOptions study;
+    StudyArguments study;
     CollectOptions collected;
     ReproduceOptions reproduction;
     std::vector<std::string> plugin_files;  ///< for the help; load_plugins() reads --load

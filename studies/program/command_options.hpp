@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/option_values.hpp"
 #include "lie/settings.hpp"
 
 #include <CLI/CLI.hpp>
@@ -48,6 +49,9 @@ CLI::Option* value(CLI::App& command, const std::string& name, const std::string
 void values(CLI::App& command, const std::string& name, const std::string& kind, const std::string& what,
             const Setter& set);
 
+/// Adds an option of a table; a switch has the text "".
+void add_option(CLI::App& command, const io::Option& option, bool repeatable, const Setter& set);
+
 /// Adds all of run::setting_options(); `given` receives the names of those that were given.
 void add_settings(CLI::App& command, lie::Settings& settings, std::vector<std::string>& given);
 
@@ -64,5 +68,12 @@ void add_output(CLI::App& command, const std::string& accepted_by, const std::st
 void add_figure_format(CLI::App& command, std::vector<std::string>& to);
 /// Adds --no-plot.
 void add_no_plot(CLI::App& command, const std::string& what, bool& plot);
+
+// The help of these options
+std::string help_of_set(const std::string& what);
+std::string help_of_normal_rows(const std::string& default_rows);
+std::string help_of_fix_initial(const std::string& and_more);
+std::string help_of_output(const std::string& accepted_by, const std::string& default_directory);
+std::string help_of_figure_format();
 
 }  // namespace hilda::studies

@@ -4,23 +4,22 @@
 #pragma once
 
 #include "run/jobs/finished_jobs.hpp"
-#include "studies/framework/study.hpp"
 
 #include <string>
 
 namespace hilda::studies {
 
+struct Study;
+struct StudyArguments;
+
 /// The study with this name. io::UsageError with the nearest name if there is none.
 const Study& find_study(const std::string& kind);
-/// Whether a study takes an option of hilda study, such as --reference
-bool takes_option(const Study& study, const std::string& option);
-
 /// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
-/// it must be new or empty unless options.force is set. With options.json and without options.output no files
-/// are written. io::UsageError for an unknown study or for an option that the study does not use.
-int run_study(const std::string& kind, StudyOptions options);
+/// it must be new or empty unless options.force is set. With --json and without options.output no files are
+/// written. io::UsageError for an unknown study or for an option that the study does not use.
+int run_study(const std::string& kind, StudyArguments arguments);
 
 /// The same with the results of all runs, from shards: no run is computed.
-int run_collected(const std::string& kind, StudyOptions options, const run::JobRecords& collected);
+int run_collected(const std::string& kind, StudyArguments arguments, const run::JobRecords& collected);
 
 }  // namespace hilda::studies

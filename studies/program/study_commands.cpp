@@ -1,117 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/study_commands.hpp"
 
-#include "run/tables/run_table.hpp"
+#include "studies/framework/study.hpp"
 #include "studies/program/arguments.hpp"
 #include "studies/program/command_options.hpp"
-#include "studies/program/run_study.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hilda::studies {
 
-namespace {
-
-/// Models, integrators, steps and settings
-void add_selection(CLI::App& c, StudyOptions& o)
+void add_study_options(CLI::App& c, std::string& kind, StudyArguments& to)
 {
+    c.add_option("KIND", kind, "name of the study; default: print the list")->type_name("");
     c.add_option_function<std::vector<std::string>>(
          "MODEL",
-         [&o](const std::vector<std::string>& all) {
-             o.problems.insert(o.problems.end(), all.begin(), all.end());
+         [&to](const std::vector<std::string>& all) {
+             to.options.given.emplace_back("--problem");
+             to.options.problems.insert(to.options.problems.end(), all.begin(), all.end());
          },
          "built-in models or model files, as --problem")
         ->type_name("");
-    values(c, "--problem", "NAME[,NAME...]",
-           "built-in models or model files, or the cases of the study; default: those of the study",
-           append(o.problems, list));
-    values(c, "--integrator", "NAME[,NAME...]", "integrators; default: those of the study",
-           append(o.integrators, integrators));
-    value(c, "--steps", "H1,H2,...", "step sizes [s]; default: those of the study", assign(o.steps, steps));
-    value(c, "--rtols", "R1,R2,...",
-          "relative tolerances of integrators with adaptive steps; default: those of the study",
-          assign(o.rtols, relative_tolerances));
-    value(c, "--bars", "N1,N2,...", "numbers of bars of the chains of study scaling; default: 1,2,4,...,1024",
-          assign(o.bars, bars));
-    value(c, "--end", "T", "end time [s]; default: that of the study or of the model",
-          assign(o.end, positive_number));
-    add_set(c, "each model", o.set);
-    values(
-        c, "--sweep", "/json/pointer=VALUES",
-        "values of an entry of the model of study sweep: V1,V2,..., or A:B:N for N numbers from A to B, or "
-        "A:B:N:log; repeatable, for all combinations",
-        append_one(o.sweep, unchanged));
-    value(c, "--observable", "COLUMN",
-          "quantity that study sweep tabulates and draws: a column of hilda help outputs, such as BODY.rz; "
-          "default: that of the model",
-          assign(o.observable, unchanged));
-    c.add_flag("--keep", o.keep, "write the motion of each run of study sweep to runs/NUMBER as well");
-    value(c, "--format", "csv|hdf5",
-          "format of the motions of --keep: trajectory.csv, or run.h5; default: csv",
-          assign(o.format, run::table_format));
-    add_fix_initial(c, "", o.fix_initial);
-    add_settings(c, o.settings, o.given_settings);
-}
-
-void add_reference(CLI::App& c, StudyOptions& o)
-{
-    value(c, "--reference", "NAME",
-          "integrator of the reference solution; default: the reference solution of each problem",
-          assign(o.reference, integrator));
-    value(c, "--reference-step", "H",
-          "step of the reference integrator [s]; default: a tenth of the smallest step of the study",
-          assign(o.reference_step, positive_number));
-    value(c, "--reference-rtol", "R",
-          "relative tolerance of a reference integrator with adaptive steps; default: 1e-12",
-          assign(o.reference_rtol, relative_tolerance));
-}
-
-}  // namespace
-
-void add_study_options(CLI::App& c, std::string& kind, StudyOptions& o)
-{
-    c.add_option("KIND", kind, "name of the study; default: print the list")->type_name("");
-    add_selection(c, o);
-    add_output(c, "--force or --resume", "out/KIND", o.output);
-    c.add_flag("--resume", o.resume,
-               "continue the interrupted study in the output directory; its finished runs are not computed "
-               "again");
-    add_reference(c, o);
-    value(c, "--preset", "balanced|dissertation",
-          "parameter set of the friction law; default: that of the study", assign(o.preset, preset));
-    add_normal_rows(c, "tangent", o.normal_rows);
-    c.add_flag("--all", o.all,
-               "study convergence with every problem, integrator and step instead of the short selection");
-    c.add_flag("--check", o.check, "evaluate all acceptance criteria of the study; exit code 6 if one fails");
-    c.add_flag("--strict", o.strict,
-               "exit code 4, after the results are written, if a run has a warning about its solution");
-    value(c, "--against", "FILE", "CSV table to compare the result with", assign(o.against, io::path));
-    value(c, "--grid", "NAME", "parameter grid of a sweep; default: the finest", assign(o.grid, unchanged));
-    value(c, "--vtk", "N", "number of ParaView frames of each run; default: no frames",
-          assign(o.vtk, frames));
-    value(c, "--repeats", "N", "repetitions of each time measurement; default: 5",
-          assign(o.repeats, positive_count));
-    value(c, "--seed", "N", "seed of random initial velocities; default: 0", assign(o.seed, io::seed));
-    c.add_flag("--force", o.force,
-               "overwrite an output directory that is not empty; accept a reference solution that is too "
-               "coarse");
-    value(c, "--jobs", "N",
-          "number of concurrent runs; default: the number of cores, or 1 in a study that measures time",
-          assign(o.jobs, positive_count));
-    value(c, "--shard", "I/N",
-          "compute part I of N of the runs, for a job array; hilda collect then writes the results of all "
-          "parts",
-          assign(o.shard, shard));
-    values(c, "--expect", "KEY=VALUE[+-TOL]",
-           "expected value of a result; exit code 6 if the result differs by more than TOL; repeatable",
-           append_one(o.expect, expectation));
-    o.draw = draw_figures;
-    add_no_plot(c, "draw no figures", o.plot);
-    add_figure_format(c, o.figure_formats);
-    c.add_flag("--latex", o.latex,
-               "write study.tex as well: the tables of the text for LaTeX, with the package booktabs");
-    c.add_flag("--quiet", o.quiet, "print no result, no warnings and no progress");
-    c.add_flag("--json", o.json, "print the result as JSON on stdout; write files only with --output");
+    for (const StudyOption& option : study_options())
+        add_option(c, option, option.repeatable,
+                   [&to, read = option.read](const std::string& name, const std::string& text) {
+                       to.options.given.push_back(name);
+                       read(to, name, text);
+                   });
+    to.draw = draw_figures;
 }
 
 void add_fit_options(CLI::App& c, FitOptions& to)
@@ -150,8 +67,14 @@ void add_fit_options(CLI::App& c, FitOptions& to)
 
 void restrict_help(CLI::App& command, const Study& to)
 {
+    const std::vector<StudyOption> options = study_options();
+    const auto is_of_study = [&](const std::string& name) {
+        const auto known = std::find_if(options.begin(), options.end(),
+                                        [&](const StudyOption& option) { return option.name == name; });
+        return known == options.end() || known->is_of(to);
+    };
     for (CLI::Option* option : command.get_options())
-        if (option->get_positional() || !takes_option(to, option->get_name()) ||
+        if (option->get_positional() || !is_of_study(option->get_name()) ||
             (option->get_name() == "--expect" && to.keys.empty()))
             command.remove_option(option);
     command.name("study " + to.name);

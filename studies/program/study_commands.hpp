@@ -3,10 +3,10 @@
 
 #pragma once
 
-#include "studies/framework/study.hpp"
 #include "studies/program/fit_command.hpp"
 #include "studies/program/plot.hpp"
 #include "studies/program/repeating/reproduce.hpp"
+#include "studies/program/study_option_table.hpp"
 #include "studies/program/view.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@
 namespace hilda::studies {
 
 /// `kind` receives the name of the study, "" without one.
-void add_study_options(CLI::App& command, std::string& kind, StudyOptions& to);
+void add_study_options(CLI::App& command, std::string& kind, StudyArguments& to);
 /// Removes the options that a study does not take, for its help, and adds its keys and files.
 void restrict_help(CLI::App& command, const Study& to);
 

@@ -47,7 +47,7 @@ void invariants(StudyContext& s)
     runs.compute(s, [&](InvariantsRun& run) {
         Invariants observer(run);
         lie::Observer* observers[] = {&observer};
-        march(run, s.options.settings, observers);
+        march(run, s.settings, observers);
     });
 
     const Columns<InvariantsRun> columns = {column::problem.as("problem"),
@@ -69,7 +69,7 @@ void invariants(StudyContext& s)
 const bool registered =
     io::Registry<Study>::add({.name = "invariants",
                               .answers = "constraint residual and orthogonality over a run",
-                              .accepted = takes::check,
+                              .options = options_of_models({"--check"}),
                               .keys = {"residual", "orthogonality"},
                               .run = invariants});
 

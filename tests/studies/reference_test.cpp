@@ -4,6 +4,7 @@
 #include "studies/framework/evaluated_run.hpp"
 #include "studies/framework/reference_solution.hpp"
 #include "studies/framework/study_context.hpp"
+#include "studies/framework/study_options.hpp"
 #include "tests/support/adaptive_scheme.hpp"
 #include "tests/support/program/csv.hpp"
 #include "tests/support/program/refused.hpp"

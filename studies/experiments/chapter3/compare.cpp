@@ -115,10 +115,10 @@ Columns<ComparedRun> differences(const std::string& when, std::array<double, 4> 
 
 void compare(StudyContext& s)
 {
-    const double h = s.one_step(1e-3), rtol = s.options.settings.rtol;
+    const double h = s.one_step(1e-3), rtol = s.settings.rtol;
     const Schemes schemes = s.schemes({"rA-half-1", "rA-half-2", "rA-full-1"});
     const Reference reference(s, finest(schemes, h, rtol));
-    if (s.options.problems.size() > 1) s.refuse("takes one problem, --problem NAME");
+    if (s.problems.size() > 1) s.refuse("takes one problem, --problem NAME");
     std::vector<Benchmark> all = s.benchmarks({"double_pendulum"}, {h});
     Benchmark& c = all.front();
     c.instants = choose_instants(c.end, h);
@@ -127,7 +127,7 @@ void compare(StudyContext& s)
     Sweep<ComparedRun> runs;
     for (const lie::Scheme* scheme : schemes)
         runs.add(c, *scheme, scheme->adaptive ? c.instants.dt : h, scheme->adaptive ? rtol : 0);
-    runs.compute(s, [&](ComparedRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](ComparedRun& run) { compute(run, s.settings); });
 
     const Columns<ComparedRun> columns =
         Columns<ComparedRun>{
@@ -152,7 +152,7 @@ const bool registered_compare = io::Registry<Study>::add(
     {.name = "compare",
      .answers =
          "trajectories of several integrators on one model and their differences to the reference solution",
-     .accepted = takes::reference | takes::rtol | takes::strict | takes::shard,
+     .options = options_of_models({"--reference", "--rtol", "--atol", "--strict", "--shard"}),
      .keys = {"max_r", "end_r", "max_A", "end_A", "max_v", "end_v", "max_omega", "end_omega"},
      .files = {"compare.csv", "compare.png"},
      .run = compare});

@@ -21,6 +21,7 @@
 #include "studies/framework/acceptance.hpp"
 #include "studies/framework/convergence_study.hpp"
 #include "studies/framework/evaluated_run.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 
@@ -260,7 +261,7 @@ void convergence(StudyContext& s)
     reference.evaluate(problems, steps);
     reference.estimate_errors(problems);
     const Sweep<ErrorRun> runs =
-        study.runs(s, problems, schemes, steps, [&](ErrorRun& run) { compute(run, s.options.settings); });
+        study.runs(s, problems, schemes, steps, [&](ErrorRun& run) { compute(run, s.settings); });
     const std::vector<Series> all = series_of(runs);
 
     const Columns<ErrorRun> columns = Columns<ErrorRun>{column::problem,
@@ -291,7 +292,7 @@ void convergence(StudyContext& s)
     s.table = columns.csv(runs);
     s.end_of_runs(run_pointers(runs));
     const auto check = [&] {
-        if (s.options.check) s.evaluate(criteria_of_orders(all));
+        if (s.check) s.evaluate(criteria_of_orders(all));
     };
     if (short_form) {
         print_overview(all, problems, s.text);
@@ -314,7 +315,7 @@ void convergence(StudyContext& s)
 const bool registered_convergence = io::Registry<Study>::add(
     {.name = "convergence",
      .answers = "order of convergence of the schemes against a reference solution (Figs. 3.4, 3.6, 3.7, 3.8)",
-     .accepted = takes::reference | takes::all | takes::check | takes::strict | takes::shard,
+     .options = options_of_models({"--reference", "--all", "--check", "--strict", "--shard"}),
      .keys = study.keys(),
      .files = {"convergence-position.png", "convergence-loads.png", "convergence-PROBLEM.png"},
      .run = convergence});

@@ -133,7 +133,7 @@ void energy(StudyContext& s)
     const std::vector<Benchmark> all = s.benchmarks({"double_pendulum", "n_pendulum_2_spin"}, steps,
                                                     [](const dae::Description&) { return 30.; });
     Sweep<EnergyRun> runs(all, s.fixed_step_schemes(), steps);
-    runs.compute(s, [&](EnergyRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](EnergyRun& run) { compute(run, s.settings); });
 
     const Columns<EnergyRun> columns = {
         column::problem,
@@ -190,14 +190,14 @@ void energy(StudyContext& s)
     for (const EnergyRun& run : runs) curves.add({run.c->problem.name, run.scheme->name, run.h}, run.curve);
     s.files = {{"energy.csv", curves.csv()}};
     s.results(columns, runs);
-    if (s.options.check) s.evaluate(criteria_of_energy(runs));
+    if (s.check) s.evaluate(criteria_of_energy(runs));
 }
 
 const bool registered_energy = io::Registry<Study>::add(
     {.name = "energy",
      .answers = "energy over time: its drift in conservative models (Fig. 3.5), its balance with the work in "
                 "damped and driven ones",
-     .accepted = takes::check | takes::strict | takes::shard,
+     .options = options_of_models({"--check", "--strict", "--shard"}),
      .keys = {"end_drift", "max_drift", "max_drift_relative", "end_balance", "max_balance",
               "max_balance_relative"},
      .files = {"energy.csv", "energy-PROBLEM.png"},

@@ -124,7 +124,7 @@ void iterations(StudyContext& s)
     const Schemes schemes = s.fixed_step_schemes();
     const std::vector<Benchmark> all = s.benchmarks({"double_pendulum", "slider_crank", "four_link"}, steps);
     Sweep<IterationsRun> runs(all, schemes, steps);
-    runs.compute(s, [&](IterationsRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](IterationsRun& run) { compute(run, s.settings); });
 
     const Columns<IterationsRun> columns = {column::problem,
                                             column::integrator,
@@ -144,13 +144,13 @@ void iterations(StudyContext& s)
     s.files = {{"iterations.csv", over_time(runs)}};
     s.results(columns, runs);
     for (size_t k = 0; k < runs.size(); ++k) s.measured[k].value["iterations"] = runs[k].mean();
-    if (s.options.check) s.evaluate(criteria_of_iterations(runs));
+    if (s.check) s.evaluate(criteria_of_iterations(runs));
 }
 
 const bool registered_iterations = io::Registry<Study>::add(
     {.name = "iterations",
      .answers = "Newton iterations per step over step size and time (Figs. 3.9, 3.11-3.13)",
-     .accepted = takes::check | takes::strict | takes::shard,
+     .options = options_of_models({"--check", "--strict", "--shard"}),
      .keys = {"iterations", "max_iterations"},
      .files = {"iterations.csv", "iterations-PROBLEM.png"},
      .run = iterations});

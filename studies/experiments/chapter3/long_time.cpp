@@ -129,7 +129,7 @@ void long_time(StudyContext& s)
                             s.fixed_step_schemes({"rA-half-2", "rA-half-1-kick", "rA-half-1-momentum",
                                                   "rA-rattle", "rA-rattle-4", "rA-rattle-6", "rA-rkmk-4"}),
                             steps);
-    runs.compute(s, [&](LongTimeRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](LongTimeRun& run) { compute(run, s.settings); });
 
     const Columns<LongTimeRun> columns = {
         column::problem,
@@ -169,7 +169,7 @@ void long_time(StudyContext& s)
 const bool registered_long_time = io::Registry<Study>::add(
     {.name = "long-time",
      .answers = "energy and angular momentum of conservative models over long times, by decade of time",
-     .accepted = takes::strict | takes::shard,
+     .options = options_of_models({"--strict", "--shard"}),
      .keys = {"energy_drift", "energy_drift_relative", "energy_max", "momentum_max", "momentum_max_relative"},
      .files = {"decades.csv", "long-time-PROBLEM.png"},
      .run = long_time});

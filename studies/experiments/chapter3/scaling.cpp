@@ -8,6 +8,7 @@
 
 #include "dae/model_file.hpp"
 #include "studies/framework/stopwatch.hpp"
+#include "studies/framework/study_options.hpp"
 #include "studies/problems/n_pendulum.hpp"
 
 #include <fmt/format.h>
@@ -49,8 +50,7 @@ std::vector<Chain> chains(const StudyContext& s)
     s.pool(all.size(), ", reading models").run([&](long k) {
         Chain& chain = all[static_cast<size_t>(k)];
         const auto begin = std::chrono::steady_clock::now();
-        chain.benchmark =
-            make_benchmark(spinning_n_pendulum(chain.N, s.options.seed.value_or(0)), s.options, end);
+        chain.benchmark = make_benchmark(spinning_n_pendulum(chain.N, s.options.seed), s.options, end);
         chain.start_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     });
     return all;
@@ -89,9 +89,9 @@ void print_fits(const std::vector<ScalingRun>& runs, const Schemes& schemes, Stu
 
 void scaling(StudyContext& s)
 {
-    if (!s.options.problems.empty())
+    if (!s.problems.empty())
         s.refuse("the model is the N-bar pendulum and --problem is not accepted; set N by --bars N1,N2,...");
-    const std::uint64_t seed = s.options.seed.value_or(0);
+    const std::uint64_t seed = s.options.seed;
     const double h = s.one_step(1e-3);
     const Schemes schemes = s.fixed_step_schemes({"rA-half-1", "rA-full-1", "rA-half-1-kick", "rA-half-2"});
     const std::vector<Chain> all = chains(s);
@@ -106,7 +106,7 @@ void scaling(StudyContext& s)
         }
     }
     runs.compute(
-        s, [&](ScalingRun& run) { march(run, s.options.settings); }, ", first runs");
+        s, [&](ScalingRun& run) { march(run, s.settings); }, ", first runs");
     time_in_turn(s, runs);
     set_ratios(runs, baseline);
 
@@ -133,7 +133,7 @@ void scaling(StudyContext& s)
     s.text << fmt::format(
         "\nmedian, min and max of {} repeats; parallel runs: {}; longest time to read a model and find its "
         "start: {:.2f} s\n",
-        s.options.repeats, s.options.jobs, longest_start);
+        s.repeats, s.jobs_at_once, longest_start);
     s.json["runs"] = columns.array(runs, {"bars", "us_per_step", "us_per_step_min", "us_per_step_max",
                                           "ratio_to_full", "iterations_per_step", "start_seconds"});
     s.figures = {"scaling.png"};
@@ -148,14 +148,13 @@ void scaling(StudyContext& s)
     for (const ScalingRun& run : runs)
         if (run.scheme->name != baseline)
             s.measured.push_back({.of = run.name(), .value = {{"ratio_to_full", run.ratio}}});
-    if (s.options.check) s.evaluate(criteria_of_times(runs));
+    if (s.check) s.evaluate(criteria_of_times(runs));
 }
 
 const bool registered_scaling = io::Registry<Study>::add(
     {.name = "scaling",
      .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
-     .accepted = takes::repeats | takes::bars | takes::check | takes::seed | takes::strict,
-     .lacking = lacks::problem,
+     .options = options_of_integrators({"--repeats", "--bars", "--check", "--seed", "--strict"}),
      .keys = {"exponent", "largest_exponent", "ratio_to_full"},
      .files = {"scaling.png"},
      .run = scaling});

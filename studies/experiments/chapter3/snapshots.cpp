@@ -100,7 +100,7 @@ std::vector<Criterion> criteria_of_mechanisms(const std::vector<SnapshotRun>& ru
 
 void draw_snapshots(StudyContext& s)
 {
-    const bool mechanisms = s.options.problems.empty();
+    const bool mechanisms = s.problems.empty();
     const std::vector<double> steps = {s.one_step(1e-3)};
     const std::vector<Benchmark> all = s.benchmarks(
         {"double_pendulum", "slider_crank", "four_link"}, steps,
@@ -108,7 +108,7 @@ void draw_snapshots(StudyContext& s)
     const Schemes schemes = s.fixed_step_schemes({"rA-half-1"});
     if (schemes.size() > 1) s.refuse("--integrator takes one integrator here");
     Sweep<SnapshotRun> runs(all, schemes, steps);
-    runs.compute(s, [&](SnapshotRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](SnapshotRun& run) { compute(run, s.settings); });
 
     const Columns<SnapshotRun> columns = {
         column::problem,
@@ -136,14 +136,14 @@ void draw_snapshots(StudyContext& s)
     }
     s.files = run::snapshot_files("", tables);
     s.results(columns, runs);
-    if (s.options.check) s.evaluate(criteria_of_mechanisms(runs));
+    if (s.check) s.evaluate(criteria_of_mechanisms(runs));
 }
 
 const bool registered_snapshots = io::Registry<Study>::add(
     {.name = "snapshots",
      .answers = "pictures of models at four times: bodies, joints, paths (Fig. 3.3); bodies and constraints "
                 "(Table 3.1)",
-     .accepted = takes::check | takes::strict | takes::shard,
+     .options = options_of_models({"--check", "--strict", "--shard"}),
      .keys = {"bodies", "CD", "DP1", "DP2", "D", "other_rows", "rows", "degrees_of_freedom"},
      .files = {"poses.csv", "contacts.csv", "shapes.json", "snapshots-PROBLEM.png"},
      .run = draw_snapshots});

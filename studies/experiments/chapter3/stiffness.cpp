@@ -14,6 +14,7 @@
 #include "dae/model_file.hpp"
 #include "io/message.hpp"
 #include "studies/experiments/chapter3/work_runs.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +46,7 @@ Benchmark benchmark(const Strut& strut, const StudyOptions& options)
 
 void stiffness(StudyContext& s)
 {
-    for (const std::string& change : s.options.set)
+    for (const std::string& change : s.set)
         for (const char* entry : {"/forces/0/stiffness=", "/forces/0/damping="})
             if (change.starts_with(entry))
                 s.refuse("it sets the stiffness and the damping of the strut, got --set " +
@@ -104,7 +105,7 @@ void stiffness(StudyContext& s)
     s.text << fmt::format(
         "\nCPU time of a run: median of {} repeats; parallel runs: {}. <=: the fastest run already reaches "
         "this accuracy; -: not reached. Reference solution: {}\n",
-        s.options.repeats, s.options.jobs, all.front().reference_name);
+        s.repeats, s.jobs_at_once, all.front().reference_name);
     s.files = {{"times.csv", times.csv()}};
     s.figures = {"stiffness.png"};
     s.table = columns.csv(runs);
@@ -114,8 +115,7 @@ void stiffness(StudyContext& s)
 const bool registered_stiffness = io::Registry<Study>::add(
     {.name = "stiffness",
      .answers = "error against CPU time over the stiffness and the damping of a strut",
-     .accepted = takes::reference | takes::rtols | takes::repeats | takes::strict,
-     .lacking = lacks::problem,
+     .options = options_of_integrators({"--reference", "--rtols", "--atol", "--repeats", "--strict"}),
      .keys = {"cpu_seconds_needed"},
      .files = {"times.csv", "stiffness.png"},
      .run = stiffness});

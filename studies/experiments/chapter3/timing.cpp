@@ -43,7 +43,7 @@ void timing(StudyContext& s)
         for (const double h : steps)
             for (const lie::Scheme* scheme : schemes) runs.add(c, *scheme, h);
     runs.compute(
-        s, [&](TimedRun& run) { march(run, s.options.settings); }, ", first runs");
+        s, [&](TimedRun& run) { march(run, s.settings); }, ", first runs");
     time_in_turn(s, runs);
     set_ratios(runs, timed_baseline);
 
@@ -59,21 +59,21 @@ void timing(StudyContext& s)
                        "iterations_per_step", "ratio_to_full", "status"});
     }
     print_half_over_full(runs, s.text);
-    s.text << fmt::format("\nmedian, min and max of {} repeats; parallel runs: {}\n", s.options.repeats,
-                          s.options.jobs);
+    s.text << fmt::format("\nmedian, min and max of {} repeats; parallel runs: {}\n", s.repeats,
+                          s.jobs_at_once);
     s.json["runs"] = columns.array(
         runs, {"us_per_step", "us_per_step_min", "us_per_step_max", "ratio_to_full", "iterations_per_step"});
     s.figures = {"timing.png"};
     s.results(columns, runs);
     for (size_t k = 0; k < runs.size(); ++k)
         if (runs[k].scheme->name == timed_baseline) s.measured[k].value.erase("ratio_to_full");
-    if (s.options.check) s.evaluate(criteria_of_times(runs));
+    if (s.check) s.evaluate(criteria_of_times(runs));
 }
 
 const bool registered_timing =
     io::Registry<Study>::add({.name = "timing",
                               .answers = "CPU time per step by problem, scheme and step size (Fig. 3.10)",
-                              .accepted = takes::repeats | takes::check | takes::strict,
+                              .options = options_of_models({"--repeats", "--check", "--strict"}),
                               .keys = {"us_per_step", "ratio_to_full"},
                               .files = {"timing.png"},
                               .run = timing});

@@ -67,8 +67,7 @@ double enough(const ToleranceSeries& series)
 
 void tolerance(StudyContext& s)
 {
-    const std::vector<std::string>& given = s.options.given_settings;
-    if (std::find(given.begin(), given.end(), "--tolerance") != given.end())
+    if (s.is_given("--tolerance"))
         s.refuse("it runs with the tolerances 1e-3 to 1e-13; --tolerance is for other studies");
     const double h = s.one_step(1e-3);
     const Schemes schemes = s.fixed_step_schemes(
@@ -82,7 +81,7 @@ void tolerance(StudyContext& s)
     for (const Benchmark& c : all)
         for (const lie::Scheme* scheme : schemes)
             for (const double of : tolerances) runs.add(c, *scheme, h).tolerance = of;
-    runs.compute(s, [&](ToleranceRun& run) { compute(run, s.options.settings); });
+    runs.compute(s, [&](ToleranceRun& run) { compute(run, s.settings); });
 
     const auto error = [](int n) { return [n](const ToleranceRun& run) { return run.error(n); }; };
     const Columns<ToleranceRun> columns = {
@@ -129,7 +128,7 @@ void tolerance(StudyContext& s)
 const bool registered_tolerance = io::Registry<Study>::add(
     {.name = "tolerance",
      .answers = "errors and Newton iterations over the tolerance of Newton's method (Sec. 3.8.2)",
-     .accepted = takes::reference | takes::strict | takes::shard,
+     .options = options_of_models({"--reference", "--strict", "--shard"}),
      .keys = {"r", "v", "Q"},
      .files = {"tolerance-PROBLEM.png"},
      .run = tolerance});

@@ -81,7 +81,7 @@ void work_precision(StudyContext& s)
     s.text << fmt::format(
         "\nCPU time of a run: median of {} repeats; parallel runs: {}. <=: the fastest run "
         "already reaches this accuracy\n",
-        s.options.repeats, s.options.jobs);
+        s.repeats, s.jobs_at_once);
     std::vector<std::string> in_json(norm::names.begin(), norm::names.end());
     in_json.insert(in_json.end(), {"steps", "iterations_per_step", "factorizations", "cpu_seconds"});
     for (const WorkSeries& of : series) {
@@ -104,7 +104,7 @@ void work_precision(StudyContext& s)
 const bool registered_work_precision = io::Registry<Study>::add(
     {.name = "work-precision",
      .answers = "error against CPU time of all integrators, including those with step-size control",
-     .accepted = takes::reference | takes::rtols | takes::repeats | takes::strict,
+     .options = options_of_models({"--reference", "--rtols", "--atol", "--repeats", "--strict"}),
      .keys = {"cpu_seconds_needed"},
      .files = {"work-precision-PROBLEM.png"},
      .run = work_precision});

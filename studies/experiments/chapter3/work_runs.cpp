@@ -2,6 +2,7 @@
 #include "studies/experiments/chapter3/work_runs.hpp"
 
 #include "studies/framework/evaluated_run.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +12,11 @@ namespace hilda::studies {
 
 namespace {
 
-void compute(WorkRun& run, const StudyOptions& options)
+void compute(WorkRun& run, const lie::Settings& settings)
 {
     Run& common = run;  // the part that the row and EvaluatedRun have in common
     EvaluatedRun evaluated{common};
-    evaluate(evaluated, options.settings);
+    evaluate(evaluated, settings);
     common = static_cast<const Run&>(evaluated);
     run.errors = evaluated.errors;
 }
@@ -49,7 +50,7 @@ Sweep<WorkRun> work_runs(const StudyContext& study, const WorkGrid& grid, const 
                 runs.add(c, *scheme, scheme->adaptive ? c.instants.dt * c.instants.stride : resolution,
                          scheme->adaptive ? resolution : 0);
     runs.compute(
-        study, [&](WorkRun& run) { compute(run, study.options); }, ", errors");
+        study, [&](WorkRun& run) { compute(run, study.settings); }, ", errors");
     time_in_turn(study, runs);
     return runs;
 }

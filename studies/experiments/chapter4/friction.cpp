@@ -13,6 +13,7 @@
 #include "studies/experiments/chapter4/friction/experiment.hpp"
 #include "studies/framework/columns.hpp"
 #include "studies/framework/published.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include "io/error.hpp"
 
@@ -49,7 +50,7 @@ std::vector<SelectedExperiment> selected(const StudyContext& s)
     std::vector<SelectedExperiment> all;
     for (const Experiment* e : selected_parts(s, "experiment", experiments())) {
         SelectedExperiment& c = all.emplace_back(SelectedExperiment{.experiment = e, .runs = e->runs});
-        std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.check_only && !s.options.check; });
+        std::erase_if(c.runs, [&](const ExperimentRun& run) { return run.check_only && !s.check; });
         c.curves.resize(c.runs.size());
         c.failures.resize(c.runs.size());
         c.snapshots.resize(c.runs.size());
@@ -194,8 +195,7 @@ const bool registered_friction = io::Registry<Study>::add(
      .answers =
          "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
          "4.14-4.18, Table 4.7)",
-     .accepted = takes::against | takes::check | takes::vtk | takes::shard,
-     .lacking = lacks::models | lacks::steps | lacks::end,
+     .options = {"--problem", "--against", "--check", "--vtk", "--shard"},
      .keys = {"difference"},
      .files = {"EXPERIMENT.csv", "EXPERIMENT-poses.csv", "EXPERIMENT-contacts.csv", "EXPERIMENT-shapes.json",
                "friction-EXPERIMENT.png", "friction-EXPERIMENT-snapshots.png"},

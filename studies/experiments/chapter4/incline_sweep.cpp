@@ -197,7 +197,7 @@ Criterion compare(StudyContext& s, const StateMap& map)
             far += cell.published != cell.state && !has_neighbour(e, a, cell.state);
         }
     const double percent = 100 * static_cast<double>(same) / static_cast<double>(compared);
-    const std::string& file = s.options.against;
+    const std::string& file = s.against;
     s.text << fmt::format(
         "comparison with {}: {:.3f} % of {} cells agree; {} differ, {} of them more than one cell from a "
         "boundary\n",
@@ -239,7 +239,7 @@ void incline_sweep(StudyContext& s)
         }
     // the largest rolling stiffness of the sweep
     scene(incline_of(map.at(o.grid.eta.size() - 1, 0), o.dissertation())).check(o.h);
-    const std::string& file = s.options.against;
+    const std::string& file = s.against;
     if (!file.empty()) {
         const PublishedGrid published{
             file, "", {}, "the header row must contain slopes in degrees and the first column eta_r"};
@@ -274,7 +274,7 @@ void incline_sweep(StudyContext& s)
                        {"slip_from", d.slip_from}});
     std::vector<Criterion> checks = criteria(o.grid, d, o.dissertation());
     if (!file.empty()) checks.push_back(compare(s, map));
-    if (s.options.check) s.evaluate(checks);
+    if (s.check) s.evaluate(checks);
 }
 
 const bool registered_incline_sweep = io::Registry<Study>::add(
@@ -282,8 +282,7 @@ const bool registered_incline_sweep = io::Registry<Study>::add(
      .answers = "final state of a sphere pushed up an incline, over slope and rolling resistance (Fig. "
                 "4.13); default "
                 "preset: dissertation",
-     .accepted = takes::preset | takes::against | takes::grid | takes::check | takes::shard,
-     .lacking = lacks::problem | lacks::models,
+     .options = {"--steps", "--end", "--preset", "--against", "--grid", "--check", "--shard"},
      .keys = {"agreement", "far", "rest_limit", "rolling_limit_least", "rolling_limit_most", "slip_from"},
      .files = {"incline-sweep.png"},
      .run = incline_sweep});

@@ -209,10 +209,10 @@ void compare(StudyContext& s, const std::vector<StackCell>& cells, std::vector<C
     }
     const double rms = std::sqrt(squares / static_cast<double>(compared));
     s.text << fmt::format(
-        "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n",
-        s.options.against, compared, rms, largest);
-    s.json["against"] = {{"file", s.options.against}, {"compared", compared}};
-    s.json["against"].update(s.measure(s.options.against, {{"rms", rms}, {"largest", largest}}));
+        "comparison with {}: {} masses, rms difference {:.4f} kg, largest difference {:.3f} kg\n", s.against,
+        compared, rms, largest);
+    s.json["against"] = {{"file", s.against}, {"compared", compared}};
+    s.json["against"].update(s.measure(s.against, {{"rms", rms}, {"largest", largest}}));
     checks.push_back(between("rms difference to the file [kg]", rms, 0, 0.01));
     checks.push_back(between("largest difference to the file [kg]", largest, 0, 0.02));
 }
@@ -262,7 +262,7 @@ void stacking(StudyContext& s)
             cells.push_back({.stack = {.gap = gap, .eta_r = eta, .dissertation = o.dissertation()}});
             places.emplace_back(eta, gap);
         }
-    const std::string& file = s.options.against;
+    const std::string& file = s.against;
     if (!file.empty()) {
         const PublishedGrid published{file, "eta_r", [](double gap) { return "m_c_gap_" + gap_text(gap); },
                                       "column eta_r must contain values of the grid"};
@@ -281,7 +281,7 @@ void stacking(StudyContext& s)
         if (k < grid_cells) return cells[k];
         return k < grid_cells + figure_cells ? of_figures[k - grid_cells] : refined;
     };
-    s.pool(cells.size() + of_figures.size() + s.options.check)
+    s.pool(cells.size() + of_figures.size() + s.check)
         .run([&](long k) { bisect(cell(k), &cell(k) == &refined ? o.h / refinement : o.h, o.end); },
              [&](io::Archive& a, long k) { cell(k).transfer(a); });
 
@@ -313,9 +313,9 @@ void stacking(StudyContext& s)
                               undecided == 1 ? "it counts" : "they count");
     s.measure(s.name, {{"undecided", undecided}});
     std::vector<Criterion> checks;
-    if (s.options.check) checks = criteria(curves, coarse, refined, o.h);
+    if (s.check) checks = criteria(curves, coarse, refined, o.h);
     if (!file.empty()) compare(s, cells, checks);
-    if (s.options.check) s.evaluate(checks);
+    if (s.check) s.evaluate(checks);
     s.table = columns_of_cells.csv(cells);
     s.figures = {"stacking.png"};
     add_snapshots(s, of_figures, o.h, o.end);
@@ -326,8 +326,7 @@ const bool registered_stacking = io::Registry<Study>::add(
      .answers =
          "critical mass of a stack of three spheres over rolling resistance (Fig. 4.19); default preset: "
          "dissertation",
-     .accepted = takes::preset | takes::against | takes::grid | takes::check | takes::shard,
-     .lacking = lacks::problem | lacks::models,
+     .options = {"--steps", "--end", "--preset", "--against", "--grid", "--check", "--shard"},
      .keys = keys(),
      .files = {"poses.csv", "contacts.csv", "shapes.json", "stacking.png", "stacking-snapshots.png"},
      .run = stacking});

@@ -337,15 +337,15 @@ void evolving_contact(StudyContext& s)
     s.end_of_runs(expected_to_finish);
 }
 
-const bool registered_evolving_contact =
-    io::Registry<Study>::add({.name = "evolving-contact",
-                              .answers = "ball in an ellipsoidal bowl, contact points as unknowns: forces, "
-                                         "residuals and energy (Figs. 5.2-5.6)",
-                              .accepted = takes::reference | takes::check | takes::vtk | takes::normal_rows |
-                                          takes::strict | takes::shard,
-                              .keys = {"r", "alpha", "F_N", "energy"},
-                              .files = {"SCENE.csv", "evolving-contact-SCENE.png"},
-                              .run = evolving_contact});
+const bool registered_evolving_contact = io::Registry<Study>::add(
+    {.name = "evolving-contact",
+     .answers = "ball in an ellipsoidal bowl, contact points as unknowns: forces, "
+                "residuals and energy (Figs. 5.2-5.6)",
+     .options =
+         options_of_models({"--reference", "--check", "--vtk", "--normal-rows", "--strict", "--shard"}),
+     .keys = {"r", "alpha", "F_N", "energy"},
+     .files = {"SCENE.csv", "evolving-contact-SCENE.png"},
+     .run = evolving_contact});
 
 }  // namespace
 

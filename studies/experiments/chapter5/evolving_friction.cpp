@@ -262,7 +262,7 @@ const bool registered_evolving_friction = io::Registry<Study>::add(
     {.name = "evolving-friction",
      .answers = "ball in a bowl with friction and rolling resistance: motion, forces and "
                 "rest position (Figs. 5.7, 5.8)",
-     .accepted = takes::check | takes::vtk | takes::strict | takes::shard,
+     .options = options_of_models({"--check", "--vtk", "--strict", "--shard"}),
      .keys = {"r", "F_f", "rest", "stops"},
      .files = {"curves.csv", "evolving-friction-point.png", "evolving-friction-forces.png"},
      .run = evolving_friction});

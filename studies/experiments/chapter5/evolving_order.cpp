@@ -104,11 +104,10 @@ std::vector<Criterion> criteria(const std::vector<Series>& all)
 std::vector<Benchmark> selected_benchmarks(const StudyContext& s)
 {
     std::vector<Benchmark> all;
-    const StudyOptions& options = s.options;
     const std::vector<std::string> otherwise = {"ball_in_bowl", "ball_in_bowl_xy", "rolling_ball_in_bowl",
                                                 "rolling_ball_in_bowl_xy", "wobbling_ellipsoid"};
-    for (const std::string& name : options.problems.empty() ? otherwise : options.problems) {
-        all.push_back(make_benchmark(problem_or_file(name), options));
+    for (const std::string& name : s.problems.empty() ? otherwise : s.problems) {
+        all.push_back(make_benchmark(problem_or_file(name), s.options));
         if (run::evolving_contacts(*all.back().started->model).empty())
             s.refuse(name + " has no evolving contact, which this study needs");
     }
@@ -123,7 +122,7 @@ void evolving_order(StudyContext& s)
     std::vector<Benchmark> benchmarks = selected_benchmarks(s);
     reference.evaluate(benchmarks, steps);
     const Sweep<ErrorRun> runs =
-        study.runs(s, benchmarks, schemes, steps, [&](ErrorRun& run) { compute(run, s.options.settings); });
+        study.runs(s, benchmarks, schemes, steps, [&](ErrorRun& run) { compute(run, s.settings); });
     const std::vector<Series> all = series_of(runs);
 
     const Columns<ErrorRun> columns = Columns<ErrorRun>{column::problem, column::integrator, column::h} +
@@ -143,13 +142,13 @@ void evolving_order(StudyContext& s)
     for (const Benchmark& c : benchmarks) s.figures.push_back(s.name + '-' + c.problem.name + ".png");
     s.table = columns.csv(runs);
     s.end_of_runs(run_pointers(runs));
-    if (s.options.check) s.evaluate(criteria(all));
+    if (s.check) s.evaluate(criteria(all));
 }
 
 const bool registered_evolving_order = io::Registry<Study>::add(
     {.name = "evolving-order",
      .answers = "order of convergence of the schemes for evolving contacts (Ch. 5)",
-     .accepted = takes::reference | takes::check | takes::normal_rows | takes::strict | takes::shard,
+     .options = options_of_models({"--reference", "--check", "--normal-rows", "--strict", "--shard"}),
      .keys = study.keys(),
      .files = {"evolving-order-PROBLEM.png"},
      .run = evolving_order});

@@ -7,6 +7,7 @@
 #include "dae/model_file.hpp"
 #include "run/frames/model_frames.hpp"
 #include "studies/framework/curve.hpp"
+#include "studies/framework/study_options.hpp"
 #include "studies/framework/sweep.hpp"
 
 #include <optional>

@@ -9,6 +9,7 @@
 #include "io/progress.hpp"
 #include "run/provenance.hpp"
 #include "studies/framework/study_context.hpp"
+#include "studies/framework/study_options.hpp"
 #include "studies/framework/table.hpp"
 
 #include "granular/validations/validation.hpp"
@@ -65,8 +66,8 @@ granular::ValidationProgress kept_by(const StudyContext& study, granular::Valida
         });
         for (const granular::ValidationWarnings& of : of_parts) warnings.include(of);
     };
-    if (study.options.output.empty()) return kept;
-    const io::CheckpointFiles files(study.options.output);
+    if (study.output.empty()) return kept;
+    const io::CheckpointFiles files(study.output);
     if (!study.options.resume) files.remove();
     kept.load = [=](const auto& read) { files.load(read); };
     kept.save = [=](const std::string& bytes) { files.save(bytes); };
@@ -87,15 +88,15 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
 {
     granular::ValidationWarnings of_part;
     granular::ValidationOptions options;
-    options.full = study.options.grid == "full";
+    options.full = study.grid == "full";
     options.warnings = &of_part;
     options.kept = kept_by(study, warnings, of_part);
-    options.beds = {.folder = folder_of_beds(study.options.output), .program = run::version_line()};
-    if (!study.options.quiet)
+    options.beds = {.folder = folder_of_beds(study.output), .program = run::version_line()};
+    if (!study.quiet)
         options.announce = [&](const std::string& text) {
             io::message("hilda: study " + study.name + ": " + text + '\n');
         };
-    io::ProgressLine line(study.options.quiet);
+    io::ProgressLine line(study.quiet);
     std::optional<double> at_begin;  // of a resumed study
     options.progress = [&](double share) {
         if (!at_begin) at_begin = share;
@@ -104,7 +105,7 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
     };
     try {
         granular::ValidationResult result = validation.run(options);
-        if (!study.options.output.empty()) io::CheckpointFiles(study.options.output).remove();
+        if (!study.output.empty()) io::CheckpointFiles(study.output).remove();
         return result;
     } catch (const io::NumericalFailure& e) {
         throw io::NumericalFailure(e.status, "study " + study.name + ": " + e.what());
@@ -114,7 +115,7 @@ granular::ValidationResult result_of(const Validation& validation, const StudyCo
 /// Prints the largest warning of each kind on stderr and adds the warnings of all runs to study.json.
 void report(const granular::ValidationWarnings& warnings, StudyContext& s)
 {
-    if (!s.options.quiet)
+    if (!s.quiet)
         for (const granular::ValidationWarning& w : warnings.largest())
             io::warning("study " + s.name + ": " + w.text);
     for (const granular::ValidationWarning& w : warnings.all()) {
@@ -125,10 +126,10 @@ void report(const granular::ValidationWarnings& warnings, StudyContext& s)
 
 void validate(const Validation& validation, StudyContext& s)
 {
-    if (!s.options.grid.empty()) io::one_of("--grid", s.options.grid, std::vector<std::string>{"full"});
+    if (!s.grid.empty()) io::one_of("--grid", s.grid, std::vector<std::string>{"full"});
     granular::ValidationWarnings warnings;
     const granular::ValidationResult result = result_of(validation, s, warnings);
-    s.json["grid"] = s.options.grid.empty() ? "quick" : s.options.grid;
+    s.json["grid"] = s.grid.empty() ? "quick" : s.grid;
     report(warnings, s);
     s.text << validation.description << '\n';
     for (const ValidationTable& t : result.tables) {
@@ -174,15 +175,20 @@ std::vector<std::string> files_of(const std::string& study)
     return files;
 }
 
+OptionNames options_of(const Validation& validation)
+{
+    OptionNames names = {"--check", "--grid", "--strict"};
+    if (validation.independent_parts) names.emplace_back("--shard");
+    return names;
+}
+
 std::vector<Study> all()
 {
     std::vector<Study> studies;
     for (const Validation& v : io::Registry<Validation>::all())
         studies.push_back({.name = "granular-" + v.name,
                            .answers = v.description,
-                           .accepted = takes::check | takes::grid | takes::strict |
-                                       (v.independent_parts ? takes::shard : 0U),
-                           .lacking = lacks::all,
+                           .options = options_of(v),
                            .files = files_of("granular-" + v.name),
                            .run = [v](StudyContext& study) { validate(v, study); }});
     return studies;

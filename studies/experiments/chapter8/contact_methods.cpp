@@ -304,15 +304,14 @@ void contact_methods(StudyContext& s)
         if (run.part == "bowl" && run.method == "evolving" && run.h == 1e-2)
             checks.push_back(between("position error of evolving contact, bowl, h = 0.01 s [m]",
                                      run.largest_error, 0, 1e-4));
-    if (s.options.check) s.evaluate(checks);
+    if (s.check) s.evaluate(checks);
 }
 
 const bool registered_contact_methods = io::Registry<Study>::add(
     {.name = "contact-methods",
      .answers = "evolving contact, DVI and DEM: error against CPU time, cost against "
                 "number of contacts (Sec. 8.2)",
-     .accepted = takes::check,
-     .lacking = lacks::models | lacks::steps | lacks::end,
+     .options = {"--problem", "--check"},
      .keys = {"error"},
      .files = {"contact-methods-PART.png"},
      .run = contact_methods});

@@ -22,6 +22,7 @@
 #include "run/tables/sink.hpp"
 #include "run/watch/run_check.hpp"
 #include "studies/experiments/sweep/swept_model.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 
@@ -120,7 +121,7 @@ private:
 
 std::string folder_of(const StudyContext& s, long number)
 {
-    return fmt::format("{}/runs/{:04d}", s.options.output, number);
+    return fmt::format("{}/runs/{:04d}", s.output, number);
 }
 
 /// Removes the kept runs of an earlier study in the same directory.
@@ -132,7 +133,7 @@ void remove_kept(const StudyContext& s)
         fs::remove(folder_of(s, number) + "/model.json", error);
         fs::remove(folder_of(s, number), error);
     }
-    fs::remove(s.options.output + "/runs", error);
+    fs::remove(s.output + "/runs", error);
 }
 
 io::SinkOptions options_of_sinks(const StudyContext& s)
@@ -170,7 +171,7 @@ void compute(SweptRun& run, const std::string& observable, const StudyContext& s
         nodes.sinks = &*sinks;
     }
     lie::Observer* observers[] = {&nodes};
-    march(run, s.options.settings, observers);
+    march(run, s.settings, observers);
     if (sinks) sinks->close();
 }
 
@@ -218,20 +219,18 @@ Columns<SweptRun> columns_of(const std::vector<SweptEntry>& entries, const dae::
 
 void sweep(StudyContext& s)
 {
-    if (s.options.problems.size() > 1) s.refuse("takes one model");
-    if (s.options.keep && s.options.output.empty())
-        s.refuse("--keep writes files: with --json it needs --output");
+    if (s.problems.size() > 1) s.refuse("takes one model");
+    if (s.options.keep && s.output.empty()) s.refuse("--keep writes files: with --json it needs --output");
     if (!s.options.format.empty() && !s.options.keep) s.refuse("--format is for the motions of --keep");
-    run::run_tables(options_of_sinks(s), s.options.output,
-                    {});  // before the first run, for a program without HDF5
+    run::run_tables(options_of_sinks(s), s.output, {});  // before the first run, for a program without HDF5
     const std::vector<SweptEntry> entries = swept_entries(s.options.sweep);
     if (entries.empty())
         s.refuse("needs --sweep /json/pointer=VALUE,VALUE,... or --sweep /json/pointer=A:B:N");
-    for (const std::string& change : s.options.set)
+    for (const std::string& change : s.set)
         for (const SweptEntry& entry : entries)
             if (change.starts_with(entry.pointer + '='))
                 s.refuse("--set and --sweep change the same entry, " + entry.pointer);
-    const std::string name = s.options.problems.empty() ? "double_pendulum" : s.options.problems.front();
+    const std::string name = s.problems.empty() ? "double_pendulum" : s.problems.front();
     const SweptModel model(s.options, problem_or_file(name), entries);
     const Schemes schemes = s.schemes({run::default_integrator});
     const std::vector<double> steps = s.steps({1e-3});
@@ -269,12 +268,11 @@ void sweep(StudyContext& s)
         for (const lie::Scheme* scheme : schemes)
             for (const double h :
                  scheme->adaptive ? std::vector<double>{benchmarks[k].end / adaptive_rows} : steps) {
-                SweptRun& run =
-                    runs.add(benchmarks[k], *scheme, h, scheme->adaptive ? s.options.settings.rtol : 0);
+                SweptRun& run = runs.add(benchmarks[k], *scheme, h, scheme->adaptive ? s.settings.rtol : 0);
                 run.values = combination(entries, k);
                 run.number = static_cast<long>(runs.size());
             }
-    if (!s.options.output.empty() && !s.options.resume) remove_kept(s);
+    if (!s.output.empty() && !s.options.resume) remove_kept(s);
     runs.compute(s, [&](SweptRun& run) {
         struct Restore {
             SweptRun& run;
@@ -314,7 +312,7 @@ void sweep(StudyContext& s)
 const bool registered_sweep = io::Registry<Study>::add(
     {.name = "sweep",
      .answers = "one model over a grid of values of its entries (--sweep): end states, energy, largest loads",
-     .accepted = takes::sweep | takes::rtol | takes::strict | takes::shard,
+     .options = options_of_models({"--sweep", "--rtol", "--atol", "--strict", "--shard"}),
      .keys = {"observable_end", "observable_min", "observable_max", "energy_drift", "constraint_norm",
               "max_force", "max_torque"},
      .files = {"sweep.png"},

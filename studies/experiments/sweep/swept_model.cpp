@@ -4,6 +4,7 @@
 #include "io/error.hpp"
 #include "io/json.hpp"
 #include "lie/check.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
 

@@ -2,6 +2,7 @@
 #include "studies/program/arguments.hpp"
 #include "io/error.hpp"
 #include "run/diagnosis.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -114,13 +114,14 @@ TEST_CASE("the help of a study has its options, its keys and its files, and no o
         CHECK(text == call(in, {"study", study.name, "--help"}).out);
         CHECK_THAT(text, Contains("hilda study " + study.name));
         const std::set<std::string> options = matches(text, "\\n  (?:-h,)?(--[a-z-]+)");
-        CHECK(options.contains("--reference") == ((study.accepted & studies::takes::reference) != 0));
-        CHECK(options.contains("--shard") == ((study.accepted & studies::takes::shard) != 0));
+        CHECK(options.contains("--reference") == study.lists("--reference"));
+        CHECK(options.contains("--shard") == study.lists("--shard"));
         CHECK(options.contains("--seed") == (study.name == "scaling"));
         CHECK(options.contains("--rtol") == (study.name == "compare" || study.name == "sweep"));
-        CHECK(options.contains("--integrator") == ((study.lacking & studies::lacks::models) == 0));
+        CHECK(options.contains("--integrator") == study.lists("--integrator"));
         CHECK(options.contains("--expect") == !study.keys.empty());
         CHECK(options.contains("--output"));
+        for (const std::string& option : study.options) CHECK(options.contains(option));
         for (const std::string& key : study.keys) CHECK_THAT(text, Contains(key));
         for (const std::string& file : study.files) CHECK_THAT(text, Contains(file));
         CHECK_FALSE(study.files.empty());

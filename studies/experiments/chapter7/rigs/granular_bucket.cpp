@@ -218,7 +218,7 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
 
 void run_study(StudyContext& s)
 {
-    const Grid& grid = one_of_list("--grid", s.options.grid, grids);
+    const Grid& grid = one_of_list("--grid", s.grid, grids);
     s.json["grid"] = grid.name;
     const RigBed soil{
         .length = 0.5, .width = 0.2, .depth = 0.1, .R = 7e-3, .k = 1e6, .h = 5e-5, .periodic = true};
@@ -256,8 +256,7 @@ void run_study(StudyContext& s)
 const bool registered_granular_bucket = io::Registry<Study>::add(
     {.name = "granular-bucket",
      .answers = "two-link arm whose bucket digs in a bed of grains, in co-simulation",
-     .accepted = takes::check | takes::grid | takes::shard,
-     .lacking = lacks::all,
+     .options = {"--check", "--grid", "--shard"},
      .files = {"motion.csv", "grains.csv", "granular-bucket.png"},
      .run = run_study});
 

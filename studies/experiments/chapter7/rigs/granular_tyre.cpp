@@ -341,7 +341,7 @@ std::vector<Criterion> criteria(const std::vector<Result>& results)
 
 void run_study(StudyContext& s)
 {
-    const Grid& grid = one_of_list("--grid", s.options.grid, grids);
+    const Grid& grid = one_of_list("--grid", s.grid, grids);
     s.json["grid"] = grid.name;
     const RigBed soil{.length = grid.length,
                       .width = grid.width,
@@ -404,8 +404,7 @@ void run_study(StudyContext& s)
 const bool registered_granular_tyre = io::Registry<Study>::add(
     {.name = "granular-tyre",
      .answers = "single-wheel rig with a tyre, imposed and free slip, in co-simulation (Figs. 7.20-7.25)",
-     .accepted = takes::check | takes::grid | takes::shard,
-     .lacking = lacks::all,
+     .options = {"--check", "--grid", "--shard"},
      .files = {"motion.csv", "grains.csv", "granular-tyre.png"},
      .run = run_study});
 

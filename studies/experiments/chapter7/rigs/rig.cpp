@@ -77,8 +77,7 @@ double RigRun::last(const std::string& column) const { return tools.values(colum
 
 Rigs::Rigs(const StudyContext& of) : study(of)
 {
-    const std::string &output = study.options.output,
-                      own = "hilda-" + study.name + '-' + std::to_string(getpid());
+    const std::string &output = study.output, own = "hilda-" + study.name + '-' + std::to_string(getpid());
     if (output.empty()) temporary = (fs::temp_directory_path() / own).string();
     folder = output.empty() ? temporary : output + "/runs";
     bed_folder = temporary.empty() ? folder : temporary;
@@ -93,7 +92,7 @@ Rigs::~Rigs()
 
 std::string Rigs::folder_of(const std::string& parent, const std::string& name) const
 {
-    if (!study.options.quiet) io::message("hilda: study " + study.name + ": " + name + '\n');
+    if (!study.quiet) io::message("hilda: study " + study.name + ": " + name + '\n');
     std::string path = path_of(parent, name);
     fs::create_directories(path);
     return path;

@@ -2,6 +2,7 @@
 #include "studies/experiments/chapter7/rigs/rig.hpp"
 
 #include "studies/framework/study_context.hpp"
+#include "studies/framework/study_options.hpp"
 
 #include <catch2/catch.hpp>
 

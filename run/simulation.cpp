@@ -224,8 +224,7 @@ bool Simulation::step()
         counted = false, begin_seconds = thread_seconds();
         count();
         failed(failure);
-        if (result.failed())
-            throw io::NumericalFailure(result.status, result.text());
+        if (result.failed()) throw io::NumericalFailure(result.status, result.text());
     }
     return false;
 }

@@ -390,7 +390,8 @@ TEST_CASE("a simulation that continues from a record has the digits, counters an
     io::Archive of_another(bytes, "record");
     dae::Model two;
     two.gravity.setZero();
-    for (int b = 0; b < 2; ++b) two.add({.name = "mass " + std::to_string(b), .m = 1, .J_bar = lie::Mat3::Identity()});
+    for (int b = 0; b < 2; ++b)
+        two.add({.name = "mass " + std::to_string(b), .m = 1, .J_bar = lie::Mat3::Identity()});
     lie::State x;
     x.body.resize(2);
     dae::start(two, x);

@@ -95,7 +95,7 @@ void add_contacts(io::Json& definitions)
     add_group<SurfaceType>(
         definitions,
         {.name = "surface",
-         .kind = {"Surface", "type", "Type of the surface."},
+         .kind = surface_kind,
          .description =
              "A surface and its position and orientation in the body. Points of a surface are given in "
              "the surface frame, with origin at position. z of this frame is the axis of a cone, "

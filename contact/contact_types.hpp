@@ -7,6 +7,7 @@
 
 namespace hilda::contact {
 
+inline const dae::TypeKind surface_kind = {"Surface", "type", "Type of the surface."};
 inline const dae::TypeKind normal_kind = {"Normal law", "type", "Type of the normal law."};
 inline const dae::TypeKind friction_kind = {"Friction law", "law", "Name of the friction law."};
 

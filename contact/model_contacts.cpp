@@ -36,6 +36,29 @@ const io::About about_friction = {"Friction law. Without it the contact is frict
                                   R"({"mu_s": 0.5, "mu_k": 0.4, "K_E": 10000})"};
 constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
 
+const dae::TypeSchema rolling_schema = {
+    .description =
+        "Ideal rolling: the material points in contact have equal velocities. This is a nonholonomic "
+        "constraint without a Coulomb bound. It requires the normal law constraint without a fallback.",
+    .examples = {}};
+
+const dae::TypeSchema implicit_schema = {
+    .description =
+        "Springs and dampers of sliding and rolling that are solved together with the step, so that no "
+        "stiffness limits the step size. It requires the normal law constraint without a fallback.",
+    .examples = {}};
+
+const dae::TypeSchema constraint_schema = {
+    .description =
+        "The contact is a constraint whose algebraic unknowns are the contact points (Fang 2022, Ch. 5). "
+        "There is no overlap and no stiffness. The normal force is the Lagrange multiplier. Both surfaces "
+        "must be smooth: disk and foot are not allowed. The command hilda integrators lists the integrators "
+        "that support it.",
+    .examples = {},
+    .rest = R"("dependentSchemas": {"restitution": {"required": ["unilateral"], "properties": )"
+            R"({"unilateral": {"const": true}}}, "impact": {"required": ["unilateral"], "properties": )"
+            R"({"unilateral": {"const": true}}}})"};
+
 /// Names of the registered normal laws; of those that can be a fallback
 std::vector<std::string> normal_laws(bool elastic)
 {
@@ -171,17 +194,7 @@ struct ConstraintNormal {
 
 ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair& pair)
 {
-    dae::defines_type(
-        o, normal_kind, "constraint", "constraint",
-        {.description =
-             "The contact is a constraint whose algebraic unknowns are the contact points (Fang 2022, Ch. "
-             "5). There is no overlap and no stiffness. The normal force is the Lagrange multiplier. "
-             "Both surfaces must be smooth: disk and foot are not allowed. The command hilda integrators "
-             "lists the integrators that support it.",
-         .examples = {},
-         .rest = R"("dependentSchemas": {"restitution": {"required": ["unilateral"], "properties": )"
-                 R"({"unilateral": {"const": true}}}, "impact": {"required": ["unilateral"], "properties": )"
-                 R"({"unilateral": {"const": true}}}})"});
+    dae::defines_type(o, normal_kind, "constraint", "constraint", constraint_schema);
     ConstraintNormal settings;
     Unilateral& unilateral = settings.unilateral;
     unilateral.enabled = o.flag(
@@ -250,13 +263,7 @@ struct ConstraintFriction {
 
 ImplicitFriction read_implicit(ObjectReader& o)
 {
-    dae::defines_type(
-        o, friction_kind, implicit, implicit,
-        {.description =
-             "Springs and dampers of sliding and rolling that are solved together with the step, so that "
-             "no stiffness limits the step size. It requires the normal law constraint without a "
-             "fallback.",
-         .examples = {}});
+    dae::defines_type(o, friction_kind, implicit, implicit, implicit_schema);
     ImplicitFriction f;
     read_coefficients(o, f.mu_s, f.mu_k);
     f.K_E = o.positive("K_E", {"Tangential stiffness of sliding friction [N/m].", "1e6"});
@@ -286,12 +293,7 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
     if (law == implicit)
         settings.within_step = read_implicit(o);
     else if (settings.ideal_rolling)
-        dae::defines_type(
-            o, friction_kind, rolling, rolling,
-            {.description = "Ideal rolling: the material points in contact have equal velocities. "
-                            "This is a nonholonomic constraint without a Coulomb bound. It requires "
-                            "the normal law constraint without a fallback.",
-             .examples = {}});
+        dae::defines_type(o, friction_kind, rolling, rolling, rolling_schema);
     else
         // A constraint has no elastic modulus for "spin": "hertz". The fallback uses the same law.
         settings.law = read_law(o, law, GivenForce(0));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surface_types.hpp"
 
+#include "contact/contact_types.hpp"
 #include "contact/tangent_basis.hpp"
 #include "io/schema/schema_recorder.hpp"
+#include "lie/check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,24 +13,20 @@ namespace hilda::contact {
 
 namespace {
 
-const dae::TypeKind kind = {"Surface", "type", "Type of the surface."};
 const std::vector<std::string> orientations = {"A", "p", "axis_angle", "euler_angles"};
 
 Mat3 read_axes(dae::ObjectReader& o, const std::string& z)
 {
     const dae::AboutOrientation about = {
         .A = {"Orientation [-]: the rotation matrix from the surface frame to the body frame. The "
-              "orientation may be "
-              "given in one way only. By default the frames are parallel.",
+              "orientation may be given in one way only. By default the frames are parallel.",
               "[[0, 0, 1], [1, 0, 0], [0, 1, 0]]"},
         .p = {"Orientation as Euler parameters e0, e1, e2, e3 [-] of length 1, from the surface frame to the "
-              "body "
-              "frame.",
+              "body frame.",
               "[0.8, 0, 0, 0.6]"},
-        .axis_angle =
-            {"Orientation as a rotation from the body frame: the components of a unit axis [-] followed by "
-             "the angle in rad.",
-             "[1, 0, 0, 0.5]"},
+        .axis_angle = {"Orientation as a rotation from the body frame: the components of a unit axis [-] "
+                       "followed by the angle in rad.",
+                       "[1, 0, 0, 0.5]"},
         .euler_angles = {"Orientation as Euler angles, from the surface frame to the body frame.",
                          R"({"sequence": "zyx", "angles": [0.5, 0, 0]})"}};
     note_orientation(o, about);
@@ -70,7 +68,7 @@ std::string definition_of(const SurfaceType& type)
 void record_surfaces(io::SchemaRecorder& recorder)
 {
     for (const SurfaceType& type : io::Registry<SurfaceType>::all())
-        dae::record_examples(recorder, kind, definition_of(type), type.name, type.schema,
+        dae::record_examples(recorder, surface_kind, definition_of(type), type.name, type.schema,
                              [&](dae::ObjectReader& o) {
                                  try {
                                      type.read(o);
@@ -113,7 +111,7 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key, const io::Abou
     dae::ObjectReader o = parent.object(key, about, "surface");
     using Types = io::Registry<SurfaceType>;
     const SurfaceType& type = *Types::find(o.one_of("type", Types::names()));
-    dae::defines_type(o, kind, definition_of(type), type.name, type.schema);
+    dae::defines_type(o, surface_kind, definition_of(type), type.name, type.schema);
     Shape shape;
     shape.surface = type.read(o);
     read_pose(o, type.z, shape);

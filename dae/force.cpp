@@ -7,7 +7,7 @@ namespace hilda::dae {
 
 bool Force::is_implicit_in(const lie::Scheme& scheme) const
 {
-    return implicit && scheme.takes.contains(lie::Feature::springs);
+    return implicit && scheme.supports.contains(lie::Feature::springs);
 }
 
 double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const

@@ -111,9 +111,7 @@ const std::vector<std::string> models = {
 /// A model with the example of a type in this list, and with the bodies that the example names
 std::string model_with(const std::string& list, const std::string& type, const std::string& example)
 {
-    const std::string text =
-        "{\"type\": " + io::in_quotes(type) + (example.empty() ? "" : ", ") + example + '}';
-    const Json entry = io::parsed_schema(text, "example of " + type);
+    const Json entry = io::parsed_schema(example_text("type", type, example), "example of " + type);
     std::set<std::string> names = {"body"};
     for (const Json::Member& m : *entry.members())
         if (const std::string* const name = m.value.string();
@@ -128,11 +126,13 @@ std::string model_with(const std::string& list, const std::string& type, const s
     return written({{"name", "example"}, {"bodies", bodies}, {list, Json::List{entry}}});
 }
 
-/// Records the examples of the registered types, and what selects among them: `group`.
+/// Records the examples of the registered types, which are elements of the list.
 template <class Type>
 void record_types(io::SchemaRecorder& recorder, const std::string& list)
 {
     for (const Type& type : io::Registry<Type>::all()) {
+        if (type.schema.examples.empty())
+            throw io::InvalidInput("type " + type.name + ": the schema needs an example of it");
         for (const std::string& example : type.schema.examples)
             record_model(model_with(list, type.name, example), "example of type " + type.name, recorder);
         Json& examples = recorder.definition(type.name)->examples;

@@ -7,9 +7,8 @@
 
 namespace hilda::dae {
 
-/// The schema (JSON Schema, draft 2020-12) of the model files that this program reads: the committed file
-/// dae/model.schema.json, in which the definitions of constraints and forces are those of the registered
-/// types, and in which a number can be an expression in a string.
+/// The schema (JSON Schema, draft 2020-12) of the model files that this program reads. It is recorded from
+/// the readers, which read the examples of all registered types.
 io::Json model_schema();
 
 }  // namespace hilda::dae

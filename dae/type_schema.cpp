@@ -5,9 +5,16 @@
 
 namespace hilda::dae {
 
+std::string example_text(const std::string& key, const std::string& name, const std::string& example)
+{
+    return '{' + io::in_quotes(key) + ": " + io::in_quotes(name) + (example.empty() ? "" : ", ") + example +
+           '}';
+}
+
 void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& definition,
                   const std::string& name, const TypeSchema& schema)
 {
+    if (!o.records_schema()) return;
     o.defines(definition, kind.title + ' ' + name, schema.description, schema.rest);
     o.note(kind.key, R"("const": )" + io::in_quotes(name), {kind.what});
 }

@@ -31,6 +31,9 @@ struct TypeKind {
     std::string what;   ///< description of this key: "Type of the surface."
 };
 
+/// {"KEY": "NAME", EXAMPLE}: the object of an example
+std::string example_text(const std::string& key, const std::string& name, const std::string& example);
+
 /// Notes for the schema that o is an object of this type, after the key with its name has been read.
 void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& definition,
                   const std::string& name, const TypeSchema& schema);

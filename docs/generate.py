@@ -25,6 +25,7 @@ KEYS_ABOUT = ("One line for each key, grouped by the object to which it belongs.
               f"for those that all have. {NONE} in the column *default* marks an optional key without a constant default. `note`, free "
               "text without effect, is left out here; most objects have it. `hilda-granular schema` prints the JSON schema.")
 SCHEMAS = ("dae/model.schema.json", "granular/case.schema.json")  # of hilda and hilda-granular
+COSIM_SCHEMA = "run/cosim/cosim.schema.json"                       # of hilda schema --cosim
 
 
 # -------------------------------------------------------------------------------------------------------- programs
@@ -181,8 +182,8 @@ def schema_text(value, indent=0, before=0):
     return f"{'{['[isinstance(value, list)]}\n{' ' * (indent + 2)}{inner}\n{' ' * indent}{'}]'[isinstance(value, list)]}"
 
 
-def program_schema(program):
-    result = subprocess.run([program, "schema"], capture_output=True, text=True, check=False)
+def program_schema(program, *options):
+    result = subprocess.run([program, "schema", *options], capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise Failure(f"{program} schema: exit code {result.returncode}: {result.stderr.strip()}")
     return schema_text(json.loads(result.stdout)) + "\n"
@@ -201,8 +202,9 @@ def main():
         parser.error("--program and --granular must be given together")
     try:
         if options.program is not None:
-            for name, program in zip(SCHEMAS, (options.program, options.granular)):
-                path, text = ROOT / name, program_schema(program)
+            for name, command in ((SCHEMAS[0], [options.program]), (SCHEMAS[1], [options.granular]),
+                                  (COSIM_SCHEMA, [options.program, "--cosim"])):
+                path, text = ROOT / name, program_schema(*command)
                 if json.loads(path.read_text(encoding="utf-8")) == json.loads(text):
                     continue
                 if options.check:

@@ -56,7 +56,7 @@ public:
     /// Files that the text names: the paths that ObjectReader::file() has returned
     mutable std::vector<std::string> files;
     const Parameters* parameters = nullptr;  ///< of the readers; nullptr: numbers are written as digits
-    SchemaRecorder* schema = nullptr;        ///< notes the keys that are read; nullptr: none does
+    SchemaRecorder* schema = nullptr;        ///< notes the keys that are read; may be nullptr
 
     /// `file` is the file name used in messages. A file of the program itself may have longer strings.
     JsonSource(std::string text, std::string file, std::size_t longest_string = max_string);

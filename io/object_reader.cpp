@@ -43,8 +43,11 @@ void ObjectReader::defines(std::string_view name, std::string_view title, std::s
 {
     if (notes == nullptr) return;
     notes = source.schema->definition(std::string(name));
+    if (!notes->title.empty() && notes->title != title)
+        fail("the schema already has a definition of this name, of " + notes->title + ", got " +
+             in_quotes(name));
     notes->title = title, notes->description = description;
-    notes->rest = source.schema->kind(rest);
+    notes->rest = source.schema->kind(rest, "schema of " + notes->title);
     notes->begin();
     constexpr size_t most = 3;
     if (source.schema->shown.contains(name) && notes->examples.size() < most) notes->add_example(value);
@@ -60,14 +63,15 @@ void ObjectReader::note_exclusive(std::span<const std::string> keys)
 void ObjectReader::note(std::string_view key, std::string_view kind, const About& about, const Json* fallback)
 {
     if (notes == nullptr) return;
+    const std::string of = (notes->title.empty() ? "" : notes->title + ", ") + "key " + std::string(key);
     Json schema = Json::object(), example;
     if (!about.text.empty()) schema["description"] = std::string(about.text);
-    schema.update(source.schema->kind(kind));
+    schema.update(source.schema->kind(kind, of));
     if (fallback != nullptr && !about.computed) schema["default"] = *fallback;
-    schema.update(source.schema->kind(about.rest));
+    schema.update(source.schema->kind(about.rest, of));
     if (!about.example.empty()) {
         const std::string list = '[' + std::string(about.example) + ']';
-        schema["examples"] = parsed_schema(list, "examples of " + std::string(key));
+        schema["examples"] = parsed_schema(list, "examples of " + of);
         example = schema["examples"].at(0);
     }
     notes->describe(key, std::move(schema), std::move(example));
@@ -171,7 +175,7 @@ bool ObjectReader::flag(std::string_view key, const About& about, std::optional<
 std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t count, const About& about)
 {
     if (notes != nullptr) {
-        const Json number = source.schema->kind("number");
+        const Json number = source.schema->kind("number", {});
         const std::string size = std::to_string(count);
         note(key,
              R"("type": "array", "items": )" + written(number) + R"(, "minItems": )" + size +

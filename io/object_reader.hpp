@@ -18,7 +18,7 @@ class ObjectSchema;
 
 /// What the schema says about a key
 struct About {
-    /// Complete sentences, with unit and frame. A key of another object that is read for a check has none.
+    /// Complete sentences, with unit and frame
     std::string_view text = {};
     std::string_view example = {};  ///< a value in JSON
     std::string_view rest = {};     ///< members of the schema besides those of the reading function
@@ -31,8 +31,8 @@ struct About {
 /// requested is unknown, see finish().
 ///
 /// The calls are also the schema: an object of a source with a SchemaRecorder notes each key with its type,
-/// range, fallback and description. A key is required if no function has looked for it before without need.
-/// The value of a missing key is then its example.
+/// range, fallback and description. A key is required unless it has a fallback or find(), has() or given()
+/// was called for it before. The value of a missing required key is its example.
 class ObjectReader {
 public:
     ObjectReader(const JsonSource& source, const Json& value, std::string pointer);
@@ -79,12 +79,13 @@ public:
     /// About::rest.
     const Json::List& list(std::string_view key, bool required, const About& about = {});
 
+    bool records_schema() const { return notes != nullptr; }
     /// A reader of the same object from the beginning
     ObjectReader again() const;
 
     bool has(std::string_view key) const;
-    /// The same for a key without a fallback that is read if it is given. The key becomes known. True for a
-    /// schema.
+    /// Whether the key is given. It becomes known. Always true while a schema is recorded, so that the key is
+    /// read.
     bool given(std::string_view key) { return find(key) != nullptr || notes != nullptr; }
     /// The value of a key, or nullptr if it is missing. The key becomes known, and its value is not recorded.
     const Json* find(std::string_view key);
@@ -170,7 +171,7 @@ private:
     std::string own_pointer;
     std::vector<std::string> known;  // keys requested so far
     Json::Object recorded;
-    std::shared_ptr<ObjectSchema> notes;  // nullptr: the object is read, not described
+    std::shared_ptr<ObjectSchema> notes;  // nullptr: no schema is recorded
 };
 
 }  // namespace hilda::io

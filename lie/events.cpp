@@ -33,6 +33,7 @@ EventSearch::EventSearch(std::vector<Event> events, Make of) : all(std::move(eve
 {
     saved.sign.assign(all.size(), unknown);
     g.assign(all.size(), std::numeric_limits<double>::quiet_NaN());
+    next_g = g;
 }
 
 bool EventSearch::node(const State& to, const Report& report)
@@ -40,30 +41,48 @@ bool EventSearch::node(const State& to, const Report& report)
     const double h = saved.node.body.empty() ? 0 : to.t - saved.node.t;
     zeros.clear();
     integrator.reset();
+    next_sign = saved.sign;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        const double now = all[k].value(to);
+        const double now = next_g[k] = all[k].value(to);
         const int sign = sign_of(now);
         if (h > 0 && counts(all[k].direction, saved.sign[k], sign)) {
             if (std::isnan(g[k])) g[k] = all[k].value(saved.node);  // of a resumed run
             zeros.push_back({sign == 0 ? h : locate(all[k], g[k], now, h), k, saved.sign[k] < 0});
         }
-        g[k] = now;
         // A function that is zero at a node has passed through it: the next sign is the opposite one, or the
         // function touches zero.
         if (sign == 0 && h > 0 && saved.sign[k] != unknown)
-            saved.sign[k] = -saved.sign[k];
+            next_sign[k] = -saved.sign[k];
         else if (sign != unknown)
-            saved.sign[k] = sign;
+            next_sign[k] = sign;
     }
     std::stable_sort(zeros.begin(), zeros.end(), [](const Zero& a, const Zero& b) { return a.tau < b.tau; });
+    states.clear();
     for (stop = 0; stop < zeros.size(); ++stop) {
-        const Zero& zero = zeros[stop];
-        set_state(zero.tau, h);
-        report({zero.event, zero.rises, x});
-        if (all[zero.event].stops) return true;
+        set_state_of(zeros[stop], to, h);
+        states.push_back(x);
+        if (all[zeros[stop].event].stops) break;
     }
+    // An exception before this line, of a force or of the formula of an event, leaves the search at its node.
+    saved.sign.swap(next_sign);
+    g.swap(next_g);
+    for (std::size_t k = 0; k < states.size(); ++k) report({zeros[k].event, zeros[k].rises, states[k]});
+    if (stop < zeros.size()) return true;
     saved.node = to;
     return false;
+}
+
+/// Sets x to the state at a zero.
+void EventSearch::set_state_of(const Zero& zero, const State& to, double h)
+{
+    set_state(zero.tau, h);
+    // The node differs from the state after a step of h if the loads changed at the last node and the scheme
+    // is staggered: the zero may then be at the node alone.
+    const Event& event = all[zero.event];
+    const int sign = sign_of(event.value(to));
+    if (zero.tau != h || sign == 0 || sign_of(event.value(x)) == sign) return;
+    x = to;
+    x.history.resize(0);
 }
 
 /// Time from the last node to the zero of g [s], to the last digits of t: the end of the bracket at which g

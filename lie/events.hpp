@@ -74,12 +74,16 @@ private:
     };
     double locate(const Event& event, double g_begin, double g_end, double h);
     void set_state(double tau, double h);
+    void set_state_of(const Zero& zero, const State& to, double h);
 
     const std::vector<Event> all;
     const Make make;
     std::unique_ptr<Integrator> integrator;
     std::vector<double> g;  ///< at the last node
+    std::vector<double> next_g;
+    std::vector<int> next_sign;
     std::vector<Zero> zeros;
+    std::vector<State> states;  ///< at the zeros up to the one that stops
     std::size_t stop = 0;
     State x, after;  ///< workspace: the state at an event, the step after it
 };

@@ -17,7 +17,7 @@ const std::vector<FeatureText>& all_features()
     return all;
 }
 
-std::vector<std::string> keys(Features features)
+std::vector<std::string> keys_of(Features features)
 {
     std::vector<std::string> found;
     for (const FeatureText& f : all_features())

@@ -12,8 +12,8 @@ namespace hilda::lie {
 
 class System;
 
-/// A part of the equations that not every scheme takes. A new one is a line here and in all_features(), a
-/// condition in features_of(), and a word in Scheme::takes of the schemes that take it.
+/// A part of the equations that not every scheme supports. A new one is a line here and in all_features(), a
+/// condition in features_of(), and a word in Scheme::supports of the schemes that support it.
 enum class Feature : unsigned {
     algebraic,     ///< algebraic variables α of position rows: evolving contacts
     regularised,   ///< regularised rows with a bound (BoundedPair): implicit friction
@@ -59,7 +59,7 @@ struct FeatureText {
 const std::vector<FeatureText>& all_features();
 
 /// The keys of a set, in the order of all_features()
-std::vector<std::string> keys(Features features);
+std::vector<std::string> keys_of(Features features);
 
 /// The features that a scheme must take to integrate the system. Springs are not among them: a scheme that
 /// does not take them evaluates them as other loads. Neither is a history, which depends on the state. A

@@ -35,12 +35,12 @@ bool Scheme::uses_option(const std::string& option) const
 
 std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
 {
-    const Features missing = features_of(system).without(takes);
+    const Features missing = features_of(system).without(supports);
     for (const auto& [feature, key, text] : all_features()) {
         if (!missing.contains(feature)) continue;
         std::string names;
         for (const Scheme& s : schemes())
-            if (s.takes.contains(feature)) names += (names.empty() ? "" : ", ") + s.name;
+            if (s.supports.contains(feature)) names += (names.empty() ? "" : ", ") + s.name;
         reject("integrator " + name,
                "does not support " + std::string(text) + "; integrators that do are " + names, name);
     }

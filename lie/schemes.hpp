@@ -19,8 +19,8 @@ class Integrator;
 struct Settings;
 class System;
 
-/// An option of a scheme itself, which no other part of the program knows: a number, or a switch with the
-/// values 0 and 1. Its value is Settings::of_scheme.at(NAME), of which a constructor keeps a copy.
+/// An option that a scheme declares: a number, or a switch with the values 0 and 1. The constructor of the
+/// scheme copies the value from Settings::of_scheme.
 struct SchemeOption {
     io::Option option;
     double default_value = 0;
@@ -49,7 +49,7 @@ struct Scheme {
     /// Largest h ω for which an undamped oscillator does not gain energy, at most 2. The stability limits of
     /// forces are those of 2.
     double stability = 2;
-    Features takes = {};  ///< what the scheme integrates besides holonomic constraints
+    Features supports = {};  ///< what the scheme integrates besides holonomic constraints
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of
     /// the scheme. Other schemes of fixed step conserve or dissipate it.
     bool energy_drifts = false;

@@ -110,10 +110,16 @@ int March::try_step(State& to)
 void March::advance(std::span<Observer* const> observers)
 {
     const int k = try_step(after);
-    if (n > 0) integrator.fill_node(x, after);  // the start has its own accelerations and multipliers
+    const State* node = &x;
+    if (n > 0 && integrator.is_staggered()) {  // the start has its own accelerations and multipliers
+        // A copy: x remains the beginning of the step if an observer throws.
+        complete = x;
+        integrator.fill_node(complete, after);
+        node = &complete;
+    }
     // Before the observers: if accepted() throws, finish() passes this node to them.
-    if (!integrator.chooses_internal_steps()) integrator.system().accepted(x, after);
-    for (Observer* o : observers) o->accepted(x, n, iterations);
+    if (!integrator.chooses_internal_steps()) integrator.system().accepted(*node, after);
+    for (Observer* o : observers) o->accepted(*node, n, iterations);
     std::swap(x, after);
     ++n;
     iterations = k;

@@ -70,7 +70,7 @@ public:
     /// its last step.
     March(State x, Integrator& integrator, double h, long n = 0, int iterations = 0);
 
-    /// Computes one step, and passes the node at its beginning to the observers. On a NumericalFailure the
+    /// Computes one step, and passes the node at its beginning to the observers. On an exception the
     /// march remains at its node. Throws NumericalFailure "step_too_large" if a body rotates by π or more in
     /// the step, except with a scheme that chooses internal steps.
     void advance(std::span<Observer* const> observers);
@@ -93,6 +93,7 @@ private:
     double time(long node) const;  ///< node · h [s]
 
     State x, after;
+    State complete;  ///< x with the velocities, accelerations and multipliers that its step computes
     Integrator& integrator;
     const double h, t_0;
     long n;

@@ -37,7 +37,7 @@ struct SimulationSetup {
     lie::Settings settings = {};
     Watch::Action watch = Watch::Action::stop;
     bool accept_unstable = false;  ///< a step above the stability limit gives a warning
-    /// Ends and rows as they were asked for [s]; 0: those of the grid. A warning says if the grid has others.
+    /// End and interval that were requested [s]; 0: those of the grid. A warning says if the grid has others.
     double end = 0, interval = 0;
     std::vector<std::string> dropped_rows = {};     ///< of dae::StartReport: a warning for each
     const dae::Description* description = nullptr;  ///< of a model file: its warnings and its events

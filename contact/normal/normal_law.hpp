@@ -5,6 +5,7 @@
 
 #include "contact/detection/detector.hpp"
 #include "dae/type_schema.hpp"
+#include "io/registry.hpp"
 
 #include <memory>
 #include <optional>

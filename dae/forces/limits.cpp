@@ -91,12 +91,12 @@ void DistanceLimit::values(const State& x, double* out) const
 
 namespace {
 
-/// The keys of a stop. At least one limit must be given.
-/// The texts of the keys
+/// The descriptions of the keys of a stop
 struct StopKeys {
     About minimum, maximum, stiffness, damping;
 };
 
+/// The keys of a stop. At least one limit must be given.
 Stop read_stop(ObjectReader& o, const StopKeys& about)
 {
     Stop stop;
@@ -112,13 +112,15 @@ Stop read_stop(ObjectReader& o, const StopKeys& about)
     return stop;
 }
 
+constexpr const char* one_limit = R"("anyOf": [{"required": ["minimum"]}, {"required": ["maximum"]}])";
+
 const TypeSchema distance_schema = {
     .description =
         "Compliant limits of the distance l of points P and Q. Beyond a limit, by delta, the force "
         "k delta max(0, 1 + d deltadot) pushes the points back; within the limits there is no force. It "
         "models a slack rope, a bump stop or a telescope. At least one limit must be given.",
-    .examples = {
-        R"("body_i": "ground", "body_j": "load", "maximum": 0.5, "stiffness": 1e5, "damping": 0.5)"}};
+    .examples = {R"("body_i": "ground", "body_j": "load", "maximum": 0.5, "stiffness": 1e5, "damping": 0.5)"},
+    .rest = one_limit};
 
 const bool distance_registered = io::Registry<ForceType>::add(
     {.name = "distance-limit",
@@ -141,7 +143,8 @@ const TypeSchema angle_schema = {
         "back; within the limits there is no torque. The angle is counted through whole turns. One step "
         "must rotate the bodies by less than three eighths of a turn. At least one limit must be given.",
     .examples = {R"("body_i": "ground", "body_j": "door", "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1], )"
-                 R"("maximum": 1.5, "stiffness": 1e3)"}};
+                 R"("maximum": 1.5, "stiffness": 1e3)"},
+    .rest = one_limit};
 
 const bool angle_registered = io::Registry<ForceType>::add(
     {.name = "angle-limit",

@@ -82,6 +82,6 @@ const bool registered =
                                .formulation = "rA",
                                .unknowns = "none; projection",
                                .source = "Heun (1900), with projection",
-                               .takes = {Feature::history}});
+                               .supports = {Feature::history}});
 
 }  // namespace

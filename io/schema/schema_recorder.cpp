@@ -77,14 +77,17 @@ Json ObjectSchema::members()
 {
     end();
     Json required = Json::array(), properties = Json::object();
-    // The free text is the last key.
-    std::stable_partition(keys.begin(), keys.end(), [](const Key& k) { return k.name != "note"; });
-    for (const Key& k : keys) {
-        if (k.schema.size() == 0) continue;
+    const auto add = [&](const Key& k) {
+        if (k.schema.size() == 0) return;
         properties[k.name] = k.schema;
         if (k.inner != nullptr) properties[k.name].update(k.inner->members());
         if (k.required) required.push_back(k.name);
-    }
+    };
+    // The free text is the last key.
+    for (const Key& k : keys)
+        if (k.name != "note") add(k);
+    for (const Key& k : keys)
+        if (k.name == "note") add(k);
     Json all = Json::object();
     if (required.size() > 0) all["required"] = required;
     all["properties"] = properties;
@@ -114,10 +117,10 @@ SchemaRecorder::SchemaRecorder()
     kinds["formula_of_names"] = {{"type", "string"}, {"minLength", 1}, {"maxLength", JsonSource::max_string}};
 }
 
-Json SchemaRecorder::kind(std::string_view name) const
+Json SchemaRecorder::kind(std::string_view name, const std::string& of) const
 {
     if (const auto known = kinds.find(name); known != kinds.end()) return known->second;
-    return parsed_schema('{' + std::string(name) + '}', "schema of a key");
+    return parsed_schema('{' + std::string(name) + '}', of);
 }
 
 std::shared_ptr<ObjectSchema> SchemaRecorder::definition(const std::string& name)

@@ -9,7 +9,7 @@
 
 #include "io/object_reader.hpp"
 
-#include <functional>
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -51,15 +51,15 @@ private:
     Key& key(std::string_view name);
     void end();
 
-    std::vector<Key> keys;
+    std::deque<Key> keys;  ///< readers of missing objects refer to their examples
     std::vector<std::pair<std::string, std::string>> exclusive;
     int objects = 0;
 };
 
 class SchemaRecorder {
 public:
-    /// Schemas of the kinds of values that ObjectReader::note() names. A reader of other units or ranges
-    /// replaces them.
+    /// Schemas of the kinds of values that ObjectReader::note() names. They may be replaced before the first
+    /// use.
     std::map<std::string, Json, std::less<>> kinds;
     /// Definitions whose examples are the objects that are read, at most three
     std::set<std::string, std::less<>> shown;
@@ -67,8 +67,8 @@ public:
     SchemaRecorder();
     /// The definition with this name; it is added if there is none.
     std::shared_ptr<ObjectSchema> definition(const std::string& name);
-    /// The schema of a key of this kind
-    Json kind(std::string_view name) const;
+    /// The schema of a key of this kind. Throws PlacedError with the name `of` for members that are not JSON.
+    Json kind(std::string_view name, const std::string& of) const;
     /// The schema of a file whose root object has the definition `root`, with the others in "$defs", in the
     /// order of their first use
     Json schema(const std::string& root) const;

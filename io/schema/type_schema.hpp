@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The part of the schema of model files or cases that describes one type: a joint, a force, a surface, a
-/// law, a fill.
+/// The part of the schema of cases that describes one type: a law, a boundary, a fill.
 
 #pragma once
 
@@ -21,9 +20,8 @@ inline const KeySchema note_key = {"note", "", R"("$ref": "#/$defs/note")"};
 
 /// Schema of the objects of one type
 struct TypeSchema {
-    std::string description;  ///< complete sentences; of a constraint, with the number of rows
-    /// Shared definitions of the schema: "points", "axes", "derivatives" of constraints, "pose" of surfaces.
-    /// Constraints and forces have the part "pair" besides, unless they have "on_one_body".
+    std::string description;  ///< complete sentences
+    /// Shared definitions of the schema, such as "boundary_keys"
     std::vector<std::string> parts = {};
     std::vector<KeySchema> keys = {};  ///< the keys besides those of `parts` and the key with the name
     std::string example = {};          ///< members of a JSON object, without the key with the name
@@ -32,9 +30,9 @@ struct TypeSchema {
 
 /// What the types of one kind have in common in the schema
 struct TypeKind {
-    std::string title;  ///< "Surface"
+    std::string title;  ///< "Boundary"
     std::string key;    ///< with the name: "type"
-    std::string what;   ///< description of this key: "Type of the surface."
+    std::string what;   ///< description of this key: "Type of the boundary."
 };
 
 /// The definition of one type. Throws PlacedError for a text of the schema that is not JSON.

@@ -89,7 +89,7 @@ const bool registered_dop853 = register_with_adaptive_steps<RungeKuttaStep, dop8
      .unknowns = "none; projection",
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Hairer, Nørsett, Wanner (1993), with projection",
-     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
+     .supports = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -42,7 +42,7 @@ const bool registered_dp_5 = register_with_adaptive_steps<RungeKuttaStep, dorman
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Dormand, Prince (1980), with projection",
      .stability = 1,
-     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
+     .supports = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

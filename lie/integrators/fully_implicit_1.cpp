@@ -52,7 +52,7 @@ const bool registered_fully_implicit_1 = register_scheme<FullyImplicit1>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.4",
      .loads = LoadEvaluation::extrapolated,
-     .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
+     .supports = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

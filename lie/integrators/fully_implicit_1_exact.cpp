@@ -137,7 +137,7 @@ const bool registered_fully_implicit_1_exact = register_scheme<FullyImplicit1Exa
      .uses = {"--tolerance", "--max-iterations"},
      .source = "Fang (2022), Sec. 3.4, with all terms of the Newton matrix",
      .loads = LoadEvaluation::implicit,
-     .takes = {Feature::redundant, Feature::history}});
+     .supports = {Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -306,7 +306,7 @@ const bool registered_generalised_alpha = register_scheme<GeneralisedAlpha>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rho-infinity"},
      .source = "Bruls, Cardona, Arnold (2012)",
      .loads = LoadEvaluation::implicit,
-     .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
+     .supports = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

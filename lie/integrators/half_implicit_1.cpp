@@ -41,8 +41,8 @@ const bool registered_half_implicit_1 = register_scheme<HalfImplicit1>(
      .unknowns = "r, h omega, h^2 lambda",
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.5",
-     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
-               Feature::history, Feature::springs},
+     .supports = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+                  Feature::history, Feature::springs},
      .energy_drifts = true});
 
 }  // namespace

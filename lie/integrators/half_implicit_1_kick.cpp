@@ -45,8 +45,8 @@ const bool registered_half_implicit_1_kick = register_scheme<HalfImplicit1Kick>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.5, with start and velocities of leapfrog",
      .loads = LoadEvaluation::extrapolated,
-     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
-               Feature::history, Feature::springs},
+     .supports = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+                  Feature::history, Feature::springs},
      .energy_drifts = true});
 
 }  // namespace

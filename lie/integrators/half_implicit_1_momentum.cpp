@@ -123,8 +123,8 @@ const bool registered_half_implicit_1_momentum = register_scheme<HalfImplicit1Mo
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Hante, Arnold (2021) without velocity projection; Fang (2022), Sec. 3.5",
      .loads = LoadEvaluation::extrapolated,
-     .takes = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
-               Feature::history, Feature::springs}});
+     .supports = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
+                  Feature::history, Feature::springs}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -59,7 +59,7 @@ const bool registered_half_implicit_2 = register_scheme<HalfImplicit2>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Fang (2022), Sec. 3.6",
      .loads = LoadEvaluation::extrapolated,
-     .takes = {Feature::algebraic, Feature::redundant, Feature::history},
+     .supports = {Feature::algebraic, Feature::redundant, Feature::history},
      .energy_drifts = true});
 
 }  // namespace

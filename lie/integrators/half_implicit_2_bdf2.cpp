@@ -73,18 +73,18 @@ private:
     Eigen::VectorXd increments;  ///< r_n - r_{n-1} and ψ_n of each body
 };
 
-const bool registered_half_implicit_2_bdf2 =
-    register_scheme<HalfImplicit2Bdf2>({.name = "rA-half-2-bdf2",
-                                        .description = "Adams-Bashforth 2 for velocities, BDF2 for positions",
-                                        .order = 2,
-                                        .order_lambda = 2,
-                                        .formulation = "rA",
-                                        .unknowns = "r, h omega, h^2 lambda",
-                                        .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
-                                        .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
-                                        .loads = LoadEvaluation::extrapolated,
-                                        .takes = {Feature::algebraic, Feature::redundant, Feature::history},
-                                        .energy_drifts = true});
+const bool registered_half_implicit_2_bdf2 = register_scheme<HalfImplicit2Bdf2>(
+    {.name = "rA-half-2-bdf2",
+     .description = "Adams-Bashforth 2 for velocities, BDF2 for positions",
+     .order = 2,
+     .order_lambda = 2,
+     .formulation = "rA",
+     .unknowns = "r, h omega, h^2 lambda",
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+     .source = "Fang (2022), Sec. 3.6, with BDF2 for positions",
+     .loads = LoadEvaluation::extrapolated,
+     .supports = {Feature::algebraic, Feature::redundant, Feature::history},
+     .energy_drifts = true});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -19,7 +19,7 @@ const bool registered_radau_5 = register_with_adaptive_steps<RadauStep>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Hairer, Wanner (1996), on the Lie group",
      .loads = LoadEvaluation::implicit,
-     .takes = {Feature::nonholonomic, Feature::history}});
+     .supports = {Feature::nonholonomic, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

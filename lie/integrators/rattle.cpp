@@ -36,7 +36,7 @@ const bool registered_rattle =
                              .unknowns = "r, h omega, h^2 lambda / 2",
                              .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
                              .source = "Hante, Arnold (2021)",
-                             .takes = {Feature::algebraic, Feature::redundant, Feature::history}});
+                             .supports = {Feature::algebraic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -293,7 +293,7 @@ const bool registered_rattle_adaptive = register_scheme<RattleAdaptive>(
      .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rtol", "--atol"},
      .source = "Hairer, Söderlind (2005), with RATTLie",
      .adaptive = true,
-     .takes = {Feature::redundant}});
+     .supports = {Feature::redundant}});
 
 }  // namespace
 }  // namespace hilda::lie

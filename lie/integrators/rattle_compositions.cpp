@@ -110,7 +110,7 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .unknowns = "r, h omega, h^2 lambda / 2",
             .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
             .source = source,
-            .takes = {Feature::redundant}};
+            .supports = {Feature::redundant}};
 }
 
 const bool registered_rattle_compositions =

@@ -63,7 +63,7 @@ const bool registered_rkmk_4 = register_scheme<Rkmk4>(
      .unknowns = "none; projection",
      .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
      .source = "Munthe-Kaas (1998), with projection",
-     .takes = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
+     .supports = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

@@ -12,8 +12,8 @@ namespace hilda::lie {
 ///     | M  Cᵀ |
 ///     | C  -d |,    C = (Φ_r, Π̄), M = diag(M, J̄), d: compliances of the regularised rows
 ///
-/// KluSaddle and Condensed make them. They differ in what a factorisation needs: KluSaddle has pivots and
-/// takes algebraic variables, Condensed has a shift for dependent rows.
+/// KluSaddle and Condensed implement this interface. They differ in what a factorisation needs: KluSaddle has
+/// pivots and takes algebraic variables, Condensed has a shift for dependent rows.
 class SaddleFactors {
 public:
     virtual ~SaddleFactors() = default;
@@ -22,7 +22,8 @@ public:
     virtual void solve(Eigen::VectorXd& b) = 0;
     /// The same for f = 0; the f in b is not read.
     virtual void solve_constraints(Eigen::VectorXd& b) = 0;
-    /// An estimate for the last factorisation, in units of the scaled matrix
+    /// For the last factorisation: KLU's estimate for the scaled matrix, or the smallest relative pivot of
+    /// the condensed matrix
     virtual double reciprocal_condition() const = 0;
 };
 

@@ -86,7 +86,7 @@ bool register_with_adaptive_steps(Scheme scheme)
 {
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
-    adaptive.takes = adaptive.takes.without({Feature::history});
+    adaptive.supports = adaptive.supports.without({Feature::history});
     adaptive.uses.insert(adaptive.uses.end(), {"--rtol", "--atol"});
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<AdaptiveStep<Method>>(system, settings, more()...);

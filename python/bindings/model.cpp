@@ -137,7 +137,7 @@ py::dict properties(const lie::Scheme& scheme)
     all["formulation"] = scheme.formulation;
     all["source"] = scheme.source;
     all["adaptive"] = scheme.adaptive || scheme.adaptive_form != nullptr;
-    all["takes"] = lie::keys(scheme.takes);
+    all["supports"] = lie::keys_of(scheme.supports);
     all["options"] = scheme.with_adaptive_steps().option_names();
     return all;
 }

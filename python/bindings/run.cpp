@@ -263,10 +263,11 @@ py::dict run(const ModelPointer& model, const RunArguments& arguments, bool reac
 void define_run(py::module_& m)
 {
     m.attr("default_integrator") = run::default_integrator;
-    m.def("setting_names", [] {
-        std::vector<std::string> names;
-        for (const run::SettingOption& option : run::setting_options()) names.push_back(option.key());
-        return names;
+    m.def("setting_is_switch", [] {
+        py::dict all;
+        for (const run::SettingOption& option : run::setting_options())
+            all[py::str(option.key())] = option.is_switch();
+        return all;
     });
     m.def(
         "_run",

@@ -63,6 +63,7 @@ public:
             const long target = node_at(t);
             while (simulation().number() < target)
                 if (signals.raised() || !simulation().step()) return false;
+            if (target >= simulation().grid().steps && !simulation().has_ended()) finish();
             return simulation().outcome().stopped_by.empty();
         });
     }

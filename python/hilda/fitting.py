@@ -154,7 +154,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
     """
     if isinstance(source, Model):
         raise UsageError("fit: needs the name, the path or the content of a model, whose entries it changes; got a Model")
-    chosen = settings_as_text("fit", settings)
+    chosen = settings_as_text("fit", (), settings)
     if jobs < 1 or max_fit_iterations < 1:
         raise UsageError(f"fit: jobs and max_fit_iterations must be positive, got {jobs} and {max_fit_iterations}")
     t, names, values, origin = _read(data, columns)

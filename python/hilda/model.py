@@ -18,6 +18,7 @@ from .surface import Surface
 from .warn import warn
 
 _one_start = threading.RLock()
+_keywords = ("integrator", "end", "step", "interval", "reactions", "columns", "observer", "force")  # of run
 Source = str | os.PathLike[str] | dict[str, Any]
 
 
@@ -260,7 +261,7 @@ class Model:
         core = self._core()
         settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
                         rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
-        outcome = _hilda._run(core, _used(core, integrator), end, step, interval, settings_as_text("run", settings), force,
+        outcome = _hilda._run(core, _used("run", core, integrator), end, step, interval, settings_as_text("run", _keywords, settings), force,
                               warn, reactions, [columns] if isinstance(columns, str) else list(columns), observer)
         error = outcome.pop("error")
         findings = outcome.pop("findings")
@@ -294,13 +295,13 @@ def run(model: Model | Source, integrator: str | type[Integrator] = _hilda.defau
     return (model if isinstance(model, Model) else Model(model)).run(integrator, **options)
 
 
-def _used(core: _hilda._Model, integrator: str | type[Integrator]) -> str | Integrator:
+def _used(where: str, core: _hilda._Model, integrator: str | type[Integrator]) -> str | Integrator:
     """The name of an integrator, or an object of its class"""
     if isinstance(integrator, str):
         return integrator
     if isinstance(integrator, type) and issubclass(integrator, Integrator):
         return integrator(_hilda.System(core))
-    raise UsageError(f"run: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
+    raise UsageError(f"{where}: an integrator must be a name or a class derived from hilda.Integrator, got {integrator!r}")
 
 
 def integrators() -> dict[str, dict[str, Any]]:

@@ -364,7 +364,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .unknowns = unknowns,
          .uses = settings_of_half_implicit<Coordinates>(),
          .source = "Fang (2022), Secs. 3.5, 3.9",
-         .takes = {lie::Feature::history},
+         .supports = {lie::Feature::history},
          .energy_drifts = true});
     return lie::register_scheme<HalfImplicit<Coordinates, true>>(
         {.name = HalfImplicit<Coordinates, true>::name(),
@@ -376,7 +376,7 @@ bool register_half_implicit(const std::string& coordinates, const std::string& u
          .uses = settings_of_half_implicit<Coordinates>(),
          .source = "Fang (2022), Secs. 3.5, 3.9, half-step start",
          .loads = lie::LoadEvaluation::extrapolated,
-         .takes = {lie::Feature::history},
+         .supports = {lie::Feature::history},
          .energy_drifts = true});
 }
 

@@ -59,7 +59,7 @@ const bool registered_rp_bdf2 =
                                   .uses = {"--tolerance", "--max-iterations"},
                                   .source = "Fang (2022), Sec. 2.1.7, with BDF2",
                                   .loads = lie::LoadEvaluation::implicit,
-                                  .takes = {lie::Feature::history}});
+                                  .supports = {lie::Feature::history}});
 
 }  // namespace
 }  // namespace hilda::reference

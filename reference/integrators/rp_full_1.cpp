@@ -46,7 +46,7 @@ const bool registered_rp_full_1 =
                                    .uses = {"--tolerance", "--max-iterations"},
                                    .source = "Fang (2022), Sec. 2.1.7",
                                    .loads = lie::LoadEvaluation::implicit,
-                                   .takes = {lie::Feature::history}});
+                                   .supports = {lie::Feature::history}});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -113,7 +113,7 @@ const bool newmark = lie::register_scheme<RpNewmark>(
      .uses = {"--tolerance", "--max-iterations", "--rho-infinity"},
      .source = "Newmark (1959); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
-     .takes = {lie::Feature::history}});
+     .supports = {lie::Feature::history}});
 const bool hht = lie::register_scheme<RpHht>(
     {.name = "rp-hht",
      .description = "HHT (Hilber, Hughes, Taylor) on Euler parameters, index 3",
@@ -124,7 +124,7 @@ const bool hht = lie::register_scheme<RpHht>(
      .uses = {"--tolerance", "--max-iterations", "--rho-infinity"},
      .source = "Hilber, Hughes, Taylor (1977); Arnold, Bruls (2007); Fang (2022), Sec. 2.1.7",
      .loads = lie::LoadEvaluation::implicit,
-     .takes = {lie::Feature::history}});
+     .supports = {lie::Feature::history}});
 
 }  // namespace
 }  // namespace hilda::reference

@@ -33,6 +33,9 @@ struct CosimFile {
 /// Reads a file. Throws io::InvalidInput with file, line, column and JSON pointer.
 CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set = {});
 
+/// The JSON schema of co-simulation files
+io::Json cosim_schema();
+
 /// Whether a path is that of a JSON file with the key "hilda_cosim"
 bool is_cosim_file(const std::string& path);
 

@@ -48,7 +48,7 @@ public:
     /// The same for jobs whose results transfer(archive, k) writes or reads. A job that finished before the
     /// study was interrupted is not called again: its result is read.
     ///
-    /// The jobs of a study that accepts takes::shard are distributed over shards. A process that has only a
+    /// The jobs of a study with the option --shard are distributed over shards. A process that has only a
     /// part of them ends with PartDone.
     void run(const std::function<void(long)>& job, const Transfer& transfer) const;
 

@@ -112,11 +112,16 @@ std::vector<SettingOption> setting_options()
 {
     std::vector<SettingOption> all = common_options();
     for (const lie::Scheme& scheme : lie::schemes())
-        for (const lie::SchemeOption& own : scheme.options)
-            if (std::none_of(all.begin(), all.end(), [&](const SettingOption& known) {
-                    return known.of == SettingOption::Of::scheme && known.name == own.option.name;
-                }))
+        for (const lie::SchemeOption& own : scheme.options) {
+            const auto known = std::find_if(all.begin(), all.end(), [&](const SettingOption& other) {
+                return other.name == own.option.name;
+            });
+            if (known == all.end())
                 all.push_back(option_of_scheme(own));
+            else if (known->of != SettingOption::Of::scheme)
+                throw std::logic_error("integrator " + scheme.name + " declares " + own.option.name +
+                                       ", which is an option of all integrators");
+        }
     return all;
 }
 
@@ -172,11 +177,15 @@ void refuse_unused_settings(const std::string& where, const std::vector<std::str
             std::any_of(schemes.begin(), schemes.end(),
                         [&](const lie::Scheme* scheme) { return scheme->uses_option(option.name); }))
             continue;
-        std::string users;
+        std::vector<std::string> users;
         for (const lie::Scheme& scheme : lie::schemes())
             if (scheme.uses_option(option.name) || scheme.with_adaptive_steps().uses_option(option.name))
-                users += (users.empty() ? "" : ", ") + scheme.name;
-        throw io::UsageError(where + ": no selected integrator uses " + option.name + "; it is for " + users);
+                users.push_back(scheme.name);
+        constexpr size_t most = 8;
+        std::string names;
+        for (size_t k = 0; k < std::min(users.size(), most); ++k) names += (k == 0 ? "" : ", ") + users[k];
+        if (users.size() > most) names += " and " + std::to_string(users.size() - most) + " others";
+        throw io::UsageError(where + ": no selected integrator uses " + option.name + "; it is for " + names);
     }
 }
 

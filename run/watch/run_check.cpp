@@ -73,7 +73,7 @@ std::string check_run(const dae::Model& model, const lie::State& start, const li
             fmt::format("run: --end must be at most {} s, the last sample of the motion of '{}', got {}",
                         motion.t, model.constraint_name(motion.constraint), end));
     for (const auto& force : model.forces())
-        if (!scheme.takes.contains(lie::Feature::history) && force->internal_states() > 0)
+        if (!scheme.supports.contains(lie::Feature::history) && force->internal_states() > 0)
             throw io::UsageError(
                 scheme.adaptive
                     ? fmt::format(
@@ -92,7 +92,7 @@ std::string check_run(const dae::Model& model, const lie::State& start, const li
                     rounded_down(stable.h), force.label());
     if (!accept_unstable)
         throw io::UsageError("run: " + what +
-                             (force.may_be_implicit() && scheme.takes.contains(lie::Feature::springs)
+                             (force.may_be_implicit() && scheme.supports.contains(lie::Feature::springs)
                                   ? "; \"implicit\": true in this force removes this limit"
                                   : "") +
                              "; --force accepts it");

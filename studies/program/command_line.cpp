@@ -185,7 +185,12 @@ private:
         c->add_flag("--json", json, "print the list as JSON");
     }
 
-    void add_schema() { add("schema", "print the JSON schema of model files", print_schema); }
+    void add_schema()
+    {
+        CLI::App* c = add("schema", "print the JSON schema of model files or of co-simulation files",
+                          [this] { return print_schema(of_cosim); });
+        c->add_flag("--cosim", of_cosim, "of co-simulation files");
+    }
 
     void add_study()
     {
@@ -394,7 +399,7 @@ private:
     RerunOptions repeated;
     run::ImportOptions imported;
     run::ExportOptions exported;
-    bool json = false;
+    bool json = false, of_cosim = false;
     std::vector<std::string> granular;  ///< arguments of hilda-granular
 };
 

@@ -10,6 +10,7 @@
 #include "lie/features.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
+#include "run/cosim/cosim_file.hpp"
 #include "studies/framework/problem.hpp"
 #include "studies/framework/study.hpp"
 
@@ -123,7 +124,7 @@ int list_integrators(bool json)
                            {"order_lambda", s.adaptive ? io::Json() : io::Json(s.order_lambda)},
                            {"adaptive", s.adaptive},
                            {"adaptive_without_step", s.with_adaptive_steps().adaptive},
-                           {"takes", lie::keys(s.takes)},
+                           {"supports", lie::keys_of(s.supports)},
                            {"formulation", s.formulation},
                            {"unknowns", s.unknowns},
                            {"options", s.with_adaptive_steps().option_names()},
@@ -132,13 +133,13 @@ int list_integrators(bool json)
         return io::exit_code::done;
     }
     std::vector<Line> lines = {
-        {"name", "order", "of lambda", "formulation", "description", "unknowns", "source", "takes"}};
+        {"name", "order", "of lambda", "formulation", "description", "unknowns", "source", "supports"}};
     for (const lie::Scheme& s : lie::schemes())
         lines.push_back({s.name, s.adaptive ? "adaptive" : std::to_string(s.order),
                          s.adaptive ? "-" : std::to_string(s.order_lambda), s.formulation, s.description,
-                         s.unknowns, s.source, fmt::format("{}", fmt::join(lie::keys(s.takes), ", "))});
+                         s.unknowns, s.source, fmt::format("{}", fmt::join(lie::keys_of(s.supports), ", "))});
     print_aligned(lines);
-    std::cout << "\ntakes: what an integrator supports besides holonomic constraints.\n";
+    std::cout << "\nsupports: what an integrator supports besides holonomic constraints.\n";
     for (const lie::FeatureText& f : lie::all_features())
         std::cout << fmt::format("  {}: {}\n", f.key, f.text);
     std::cout << "The default is rA-half-1-momentum; hilda check names the integrator that suits a model.\n";
@@ -153,9 +154,9 @@ int list_studies(bool json)
     return io::exit_code::done;
 }
 
-int print_schema()
+int print_schema(bool of_cosim)
 {
-    std::cout << io::written(dae::model_schema()) << '\n';
+    std::cout << io::written(of_cosim ? run::cosim_schema() : dae::model_schema()) << '\n';
     return io::exit_code::done;
 }
 

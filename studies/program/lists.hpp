@@ -17,7 +17,7 @@ int write_model(const std::string& name, const std::string& to);
 int write_models(const std::string& folder);
 int list_integrators(bool json);
 int list_studies(bool json);
-/// Prints the schema of model files
-int print_schema();
+/// Prints the schema of model files, or that of co-simulation files
+int print_schema(bool of_cosim);
 
 }  // namespace hilda::studies

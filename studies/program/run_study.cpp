@@ -36,8 +36,7 @@ const Study& find_study(const std::string& kind)
 
 namespace {
 
-/// Completes the options by defaults. io::UsageError for options that exclude each other, and for an unknown
-/// key of --expect.
+/// Completes the options by defaults. io::UsageError for options that exclude each other.
 void complete(StudyArguments& arguments, const Study& study)
 {
     StudyOptions& options = arguments.options;

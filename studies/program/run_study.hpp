@@ -14,8 +14,8 @@ struct StudyArguments;
 
 /// The study with this name. io::UsageError with the nearest name if there is none.
 const Study& find_study(const std::string& kind);
-/// Runs the study `kind` and returns its exit code. The output directory is options.output, default out/KIND;
-/// it must be new or empty unless options.force is set. With --json and without options.output no files are
+/// Runs the study `kind` and returns its exit code. The output directory is that of --output,
+/// default out/KIND; it must be new or empty without --force. With --json and without --output no files are
 /// written. io::UsageError for an unknown study or for an option that the study does not use.
 int run_study(const std::string& kind, StudyArguments arguments);
 

@@ -35,7 +35,7 @@ TEST_CASE("a step of a mechanism with drivers, springs, internal states and expr
         model.load(
             dae::PrescribedForce(1, Vec3(0, 0.1, 0), dae::Frame::body,
                                  {io::Expression("t"), io::Expression("0"), io::Expression("cos(3*t)")}));
-        if (s.takes.contains(lie::Feature::history)) model.load(tests::Bristle(0, 2, 0.1, 1e-3));
+        if (s.supports.contains(lie::Feature::history)) model.load(tests::Bristle(0, 2, 0.1, 1e-3));
         dae::start(model, x, {.fix_initial = true});
         const auto integrator = s.make(model, {});
         lie::March march(x, *integrator, 1e-3);

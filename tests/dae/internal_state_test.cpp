@@ -101,7 +101,7 @@ TEST_CASE("forces with internal states reproduce the closed-form motion", "[dae]
         constexpr double h = 1e-3, t = 0.5;
         lie::March march(two.x, *integrator, h);
         INFO(scheme.name);
-        if (!scheme.takes.contains(lie::Feature::history)) {
+        if (!scheme.supports.contains(lie::Feature::history)) {
             REQUIRE_THROWS_WITH(march.advance({}), Catch::Contains("loads with a history"));
             continue;
         }

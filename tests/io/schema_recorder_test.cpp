@@ -144,7 +144,19 @@ TEST_CASE("a text of a schema that is not JSON is refused", "[io][schema]")
     const auto rest = [](io::ObjectReader& o) { o.number("k", {"K [-].", "1", R"("type": number)"}); };
     CHECK_THROWS_WITH(recorded({R"({"k": 1})"}, rest), Catch::Contains("not JSON"));
     const auto example = [](io::ObjectReader& o) { o.number("k", {"K [-].", "one"}); };
-    CHECK_THROWS_WITH(recorded({R"({"k": 1})"}, example), Catch::StartsWith("examples of k:1:"));
+    CHECK_THROWS_WITH(recorded({R"({"k": 1})"}, example), Catch::StartsWith("examples of key k:1:"));
     const auto unknown = [](io::ObjectReader&) {};
     CHECK_THROWS_WITH(recorded({R"({"k": 1})"}, unknown), Catch::Contains("unknown key \"k\""));
+}
+
+TEST_CASE("an object that the example omits is read from its own example", "[io][schema]")
+{
+    const auto read = [](io::ObjectReader& o) {
+        io::ObjectReader own = o.object("own", {"Own keys.", R"({"x": 5})"});
+        for (const char* key : {"a", "b", "c", "d", "e", "f", "g", "h"})
+            o.number(key, {"Number [-].", "1"}, 0);
+        CHECK(own.number("x", {"X [m].", "1"}) == 5);
+        own.finish();
+    };
+    CHECK_THAT(recorded({"{}"}, read), Catch::Contains(R"("required": ["own"])"));
 }

@@ -76,7 +76,7 @@ const bool registered =
                                              .scope = io::Scope::numerical},
                                             0}},
                                .source = "Fang (2022), Eqs. 2.9, 2.17",
-                               .takes = {Feature::history}});
+                               .supports = {Feature::history}});
 
 }  // namespace
 }  // namespace hilda::lie

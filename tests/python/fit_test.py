@@ -120,7 +120,7 @@ class Fits(unittest.TestCase):
                              ({"sigma": {"x": 1}}, "only one of them has"),
                              ({"sigma": -1}, "must be positive"),
                              ({"jobs": 0}, "must be positive, got 0"),
-                             ({"rotl": 1}, "unknown keys rotl"),
+                             ({"rotl": 1}, "unknown keyword 'rotl'; did you mean 'rtol'"),
                              ({"source": hilda.Model(WHEEL)}, "got a Model"),
                              ({"integrator": "rA"}, "rA")):
             with self.subTest(text), self.assertRaisesRegex((hilda.UsageError, hilda.InvalidInput), text):

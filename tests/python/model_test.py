@@ -87,7 +87,7 @@ class Models(unittest.TestCase):
     def test_lists(self):
         self.assertIn("rA-half-1-momentum", hilda.integrators())
         self.assertEqual(hilda.integrators()["rA-rkmk-4"]["order"], 4)
-        self.assertEqual(hilda.integrators()["rA-rkmk-4"]["takes"], ["contacts", "rolling", "redundant_rows", "history"])
+        self.assertEqual(hilda.integrators()["rA-rkmk-4"]["supports"], ["contacts", "rolling", "redundant_rows", "history"])
         self.assertIn("ida-rp", hilda.integrators())
         self.assertIn("slider_crank", hilda.problems())
 

@@ -68,7 +68,7 @@ class Steps(unittest.TestCase):
 
     def test_each_setting_of_the_program_is_a_keyword(self):
         keywords = inspect.signature(hilda.Simulation).parameters
-        self.assertEqual([name for name in _hilda.setting_names if name not in keywords], [])
+        self.assertEqual([name for name in _hilda.setting_is_switch() if name not in keywords], [])
         with self.assertRaisesRegex(hilda.UsageError, "--rtol"):
             hilda.Simulation(BALL, step=1e-3, rtol=1e-8)
         with self.assertRaisesRegex(hilda.UsageError, "interval"):
@@ -94,6 +94,26 @@ class Steps(unittest.TestCase):
             adaptive.advance(0.3)
         self.assertTrue(adaptive.advance(0.75))
         self.assertEqual(adaptive.t, 0.75)
+
+    def test_the_end_has_the_events_of_the_last_step(self):
+        sim = hilda.Simulation({**BALL, "events": [{**BALL["events"][0], "action": "stop"}]}, "rA-rkmk-4", step=0.01, end=0.8)
+        self.assertFalse(sim.advance(0.8))
+        self.assertEqual((sim.status, sim.stopped_by), ("stopped", "top"))
+        sim = hilda.Simulation("double_pendulum", step=0.01, end=0.1)
+        self.assertTrue(sim.advance(0.1))
+        self.assertEqual(sim.status, "ok")
+        with self.assertRaisesRegex(hilda.UsageError, "has ended"):
+            sim.set_loads()
+
+    def test_invalid_keywords(self):
+        for keywords, text in (({"stp": 1e-3}, "unknown keyword 'stp'; did you mean 'step'"),
+                               ({"abc": 1}, "unknown keyword 'abc'; it has integrator, .*step, .*force, atol"),
+                               ({"reparametrise": "no"}, "reparametrise must be True or False, got 'no'"),
+                               ({"reparametrise": 0}, "reparametrise must be True or False, got 0")):
+            for function in (hilda.Simulation, hilda.run):
+                with self.assertRaisesRegex(hilda.UsageError, text):
+                    function("double_pendulum", "reps-half-1", end=0.01, **keywords)
+        hilda.Simulation("double_pendulum", "reps-half-1", reparametrise=np.False_)
 
     def test_states_can_be_kept(self):
         sim = hilda.Simulation("double_pendulum", end=1)
@@ -167,6 +187,54 @@ class Failures(unittest.TestCase):
         broken[0] = False
         self.assertTrue(sim.advance(0.2))
         self.assertAlmostEqual(sim.complete_state().rdot[0, 0], 0.2, delta=1e-12)
+
+    def test_an_exception_after_a_step_was_computed_does_not_change_the_motion(self):
+        def potential(x):
+            calls[0] += 1
+            if calls[0] in failing:
+                raise RuntimeError("planned")
+            return 0
+
+        for integrator in ("rA-half-1-momentum", "rA-half-2", "rA-half-2-bdf2", "rA-rkmk-4"):
+            ends = []
+            for failing in ((), range(5, 200, 9)):
+                calls, raised = [0], 0
+                model = hilda.Model("double_pendulum").force(lambda x: np.zeros((2, 3)), potential=potential)
+                sim = hilda.Simulation(model, integrator, step=0.01, end=1)
+                while sim.t < 1:
+                    try:
+                        sim.step()
+                    except RuntimeError:
+                        raised += 1
+                ends.append(sim.state)
+            with self.subTest(integrator):
+                self.assertGreater(raised, 10)
+                np.testing.assert_allclose(ends[1].r, ends[0].r, rtol=0, atol=1e-9)
+                np.testing.assert_allclose(ends[1].rdot, ends[0].rdot, rtol=0, atol=1e-8)
+
+    def test_an_exception_in_the_search_for_events_loses_no_event(self):
+        def push(x):
+            calls[0] += 1
+            if calls[0] == fail_at:
+                raise RuntimeError("planned")
+            return [[0, 0, 0]]
+
+        events = [{"name": "a", "value": "mass.rx - 0.1034"}, {"name": "b", "value": "mass.rx - 0.1036", "action": "stop"}]
+        model = {**MASS, "bodies": [{**MASS["bodies"][0], "r_dot": [1, 0, 0]}], "events": events}
+        for integrator in ("rA-rkmk-4", "rA-half-1-momentum"):
+            for fail_at in range(1, 40):
+                calls = [-10**9]
+                sim = hilda.Simulation(hilda.Model(model).force(push), integrator, step=0.01, end=0.2)
+                sim.advance(0.1)
+                calls = [0]
+                more = True
+                while more:
+                    try:
+                        more = sim.step()
+                    except RuntimeError:
+                        pass
+                self.assertEqual((sim.status, sim.events.names), ("stopped", ["a", "b"]), (integrator, fail_at))
+                np.testing.assert_allclose(sim.events.t, [0.1034, 0.1036], rtol=0, atol=1e-12)
 
     def test_the_simulation_cannot_be_used_during_a_step(self):
         sim = None
@@ -270,6 +338,20 @@ class Loads(unittest.TestCase):
             errors.append(abs(sim.state.r[0, 0] - (1 - np.cos(4))))
         self.assertAlmostEqual(np.log2(errors[0] / errors[1]), 2, delta=0.1)
 
+    def test_the_state_of_an_event_after_a_change_of_the_loads_satisfies_it(self):
+        model = {**MASS, "events": [{"name": "v", "value": "mass.vx - 0.35"}]}
+        for integrator in ("rA-rkmk-4", "rA-half-1-momentum", "rA-half-1", "rA-half-2", "rA-rattle", "rA-genalpha"):
+            sim = hilda.Simulation(model, integrator, step=0.01, end=0.3)
+            sim.advance(0.1)
+            sim.set_loads([[100, 0, 0]])
+            sim.step()
+            sim.set_loads()
+            sim.advance(0.3)
+            with self.subTest(integrator):
+                self.assertEqual(sim.events.names, ["v"])
+                self.assertGreaterEqual(sim.events.rdot[0, 0, 0], 0.35 - 1e-12)
+                self.assertLess(abs(sim.events.t[0] - 0.1035), 0.01)
+
     def test_multipliers_and_accelerations_at_the_start_follow_the_loads(self):
         sim = hilda.Simulation("double_pendulum", "rA-half-1-momentum", end=1)
         before = sim.state
@@ -370,7 +452,8 @@ class Checkpoints(unittest.TestCase):
         whole = hilda.run(BALL, "rA-rkmk-4", step=0.01, end=2)
         np.testing.assert_array_equal(later.events.t, whole.events.t)
         # The checkpoint at the end is one before the check of the last node.
-        sim.advance(1)
+        while sim.t < 1:
+            sim.step()
         before = sim.checkpoint()
         self.assertFalse(sim.step())
         self.assertEqual((sim.status, sim.checkpoint()), ("ok", before))

@@ -88,13 +88,13 @@ TEST_CASE("each scheme continues from a checkpoint with the same digits", "[run]
     };
     dae::Description with_bristles = described(true), without = described(false);
     for (const lie::Scheme& scheme : lie::schemes()) {
-        dae::Description& d = scheme.takes.contains(lie::Feature::history) ? with_bristles : without;
+        dae::Description& d = scheme.supports.contains(lie::Feature::history) ? with_bristles : without;
         if (scheme.adaptive) continue;
         const bool has_history = !d.x.internal_state.empty() && d.model->internal_states_are_history();
         if (&d == &without && has_history) continue;  // of a contact
-        if (!d.model->general_constraints().empty() && !scheme.takes.contains(lie::Feature::nonholonomic))
+        if (!d.model->general_constraints().empty() && !scheme.supports.contains(lie::Feature::nonholonomic))
             continue;
-        if (!scheme.takes.contains(lie::features_of(*d.model))) continue;
+        if (!scheme.supports.contains(lie::features_of(*d.model))) continue;
         const lie::Settings settings{
             .linear_solver = regularised ? lie::LinearSolver::klu : lie::LinearSolver::automatic,
             .reparametrise = true};

@@ -216,7 +216,7 @@ TEST_CASE("all integrators converge to the same position of a rolling ball (long
     const OneBall one(rolling(1, 0.98), sticking);
     const State reference = one.after("rA-rkmk-4", 0.1, 1e-5);
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::history)) continue;
+        if (!s.supports.contains(lie::Feature::history)) continue;
         const double a = distance(one.after(s.name, 0.1, 5e-4).body[0], reference.body[0]),
                      b = distance(one.after(s.name, 0.1, 2.5e-4).body[0], reference.body[0]);
         INFO(s.name << " declares " << s.order << ", errors " << a << ' ' << b);

@@ -511,7 +511,7 @@ TEST_CASE("every scheme for evolving contacts converges with tracked friction (l
     const Vec3 reference = centre_by_ode(t);
     const Released b(0);
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::algebraic) || s.adaptive) continue;
+        if (!s.supports.contains(lie::Feature::algebraic) || s.adaptive) continue;
         const double h =
             5e-4;  // the Newton matrix of fully implicit schemes does not contain the stiff friction
         const double far = (march(b.model, b.x, s.name, t, 2 * h).body[0].r - reference).norm(),

@@ -384,9 +384,9 @@ TEST_CASE("implicit friction is rejected by schemes, forces and parameters that 
     const Released b(rubber);
     for (const lie::Scheme& s : lie::schemes()) {
         INFO(s.name);
-        if (s.takes.contains(lie::features_of(b.model)))
+        if (s.supports.contains(lie::features_of(b.model)))
             CHECK_NOTHROW(s.make(b.model, {}));
-        else if (s.takes.contains(lie::Feature::algebraic))
+        else if (s.supports.contains(lie::Feature::algebraic))
             CHECK_THROWS_WITH(s.make(b.model, {}),
                               Catch::Contains("does not support implicit friction; integrators that do "
                                               "are rA-half-1, rA-half-1-kick, rA-half-1-momentum"));

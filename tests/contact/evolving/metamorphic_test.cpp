@@ -177,9 +177,9 @@ TEST_CASE("four times the gravity at half the step gives the same motion bit for
 TEST_CASE("both linear solvers give the same motion of evolving contacts", "[contact][evolving][condensed]")
 {
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::algebraic)) continue;
+        if (!s.supports.contains(lie::Feature::algebraic)) continue;
         for (const Friction friction : {Friction::none, Friction::rolling}) {
-            if (friction == Friction::rolling && !s.takes.contains(lie::Feature::nonholonomic)) continue;
+            if (friction == Friction::rolling && !s.supports.contains(lie::Feature::nonholonomic)) continue;
             const auto at_end = [&](lie::LinearSolver solver) {
                 BallInBowl scene(Vec3(0.93073643551905849, 1.3152971613841562, -1.1988698851259592),
                                  friction);
@@ -204,8 +204,8 @@ TEST_CASE("a step with evolving contacts does not allocate", "[contact][evolving
     for (const lie::Scheme& s : lie::schemes())
         for (const lie::LinearSolver solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed})
             for (const Friction friction : {Friction::none, Friction::rolling}) {
-                if (!s.takes.contains(lie::Feature::algebraic) ||
-                    (friction == Friction::rolling && !s.takes.contains(lie::Feature::nonholonomic)))
+                if (!s.supports.contains(lie::Feature::algebraic) ||
+                    (friction == Friction::rolling && !s.supports.contains(lie::Feature::nonholonomic)))
                     continue;
                 BallInBowl scene(Vec3(0.93073643551905849, 1.3152971613841562, -1.1988698851259592),
                                  friction);

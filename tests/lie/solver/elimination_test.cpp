@@ -314,7 +314,7 @@ TEST_CASE("a bead on a cycloid converges to the closed form with the declared or
     const Cycloid bead;
     int schemes = 0;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::algebraic)) continue;
+        if (!s.supports.contains(lie::Feature::algebraic)) continue;
         ++schemes;
         const double h = s.order > 5 ? 0.08 : s.order > 2 ? 2e-2 : 1e-3;
         const Errors coarse = errors(s, bead, h), fine = errors(s, bead, h / 2);
@@ -336,7 +336,7 @@ TEST_CASE("a step with algebraic variables has the same result with both linear 
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::algebraic)) continue;
+        if (!s.supports.contains(lie::Feature::algebraic)) continue;
         lie::State x = bead.exact(0), y = x;
         const auto klu = s.make(bead, {.linear_solver = lie::LinearSolver::klu}),
                    condensed = s.make(bead, {.linear_solver = lie::LinearSolver::condensed});
@@ -357,7 +357,7 @@ TEST_CASE("a step with algebraic variables does not allocate memory", "[lie][all
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes())
         for (const lie::LinearSolver solver : {lie::LinearSolver::klu, lie::LinearSolver::condensed}) {
-            if (!s.takes.contains(lie::Feature::algebraic)) continue;
+            if (!s.supports.contains(lie::Feature::algebraic)) continue;
             const auto integrator = s.make(bead, {.linear_solver = solver});
             lie::State x = bead.exact(0);
             for (int n = 0; n < 3; ++n) integrator->step(x, 1e-3);
@@ -374,7 +374,7 @@ TEST_CASE("a scheme without support for algebraic variables names the schemes th
 {
     const Cycloid bead;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (s.takes.contains(lie::Feature::algebraic)) {
+        if (s.supports.contains(lie::Feature::algebraic)) {
             CHECK_NOTHROW(s.make(bead, {}));
             continue;
         }
@@ -384,7 +384,7 @@ TEST_CASE("a scheme without support for algebraic variables names the schemes th
                                                 Catch::Contains("does not support evolving contacts") &&
                                                 Catch::Contains("rA-half-1-momentum"));
     }
-    CHECK_FALSE(lie::scheme("rA-full-1-exact").takes.contains(lie::Feature::algebraic));
+    CHECK_FALSE(lie::scheme("rA-full-1-exact").supports.contains(lie::Feature::algebraic));
 }
 
 TEST_CASE("rA-half-1-momentum conserves the angular momentum of a free body to rounding", "[lie][invariants]")

@@ -104,7 +104,7 @@ TEST_CASE("the schemes of second order conserve the energy of an oscillator at a
     const Oscillator system(k, 0);
     int schemes = 0;
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::springs) || s.order < 2) continue;
+        if (!s.supports.contains(lie::Feature::springs) || s.order < 2) continue;
         ++schemes;
         INFO(s.name << ", h omega = " << h * omega);
         const lie::Trajectory run = nodes(system, s, 0.02, 4, h, 400);
@@ -127,7 +127,7 @@ TEST_CASE("the schemes of second order let a damped body decay by the exact fact
     const double per_step = GENERATE(1e-3, 0.3, 4.), h = 0.01, c = per_step * Oscillator::m / h;
     const Oscillator system(0, c);
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::springs) || s.order < 2) continue;
+        if (!s.supports.contains(lie::Feature::springs) || s.order < 2) continue;
         INFO(s.name << ", h c/m = " << per_step);
         const lie::Trajectory run = nodes(system, s, 0, 5, h, 6);
         for (size_t n = 2; n < run.row.size(); ++n)
@@ -141,7 +141,7 @@ TEST_CASE("a spring or damper of negative coefficient is evaluated as an explici
     const double h = 1e-3;
     const Oscillator implicit(-50, -3), explicitly(-50, -3, false);
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::springs)) continue;
+        if (!s.supports.contains(lie::Feature::springs)) continue;
         INFO(s.name);
         const lie::State a = nodes(implicit, s, 0.1, 1, h, 50).row.back(),
                          b = nodes(explicitly, s, 0.1, 1, h, 50).row.back();

@@ -104,7 +104,7 @@ TEST_CASE("integrators with redundant rows pass a flat configuration of the N-fo
     const dae::Description d = started_in_order("n_four_bar");
     const lie::State x = exact("n_four_bar", 1);
     for (const lie::Scheme& s : lie::schemes()) {
-        if (!s.takes.contains(lie::Feature::redundant)) continue;
+        if (!s.supports.contains(lie::Feature::redundant)) continue;
         INFO(s.name);
         const double coarse = position_distance(run(d, s, 1, 4e-3).end, x),
                      fine = position_distance(run(d, s, 1, 2e-3).end, x);
@@ -143,7 +143,7 @@ TEST_CASE("integrators with redundant rows run the N-four-bar for 10 s (long)", 
         const dae::Description d = started_in_order(problem);
         const double scale = static_cast<double>(d.x.body.size()) / 5;
         for (const lie::Scheme& s : lie::schemes()) {
-            if (!s.takes.contains(lie::Feature::redundant) || s.name.starts_with("rA-rattle-")) continue;
+            if (!s.supports.contains(lie::Feature::redundant) || s.name.starts_with("rA-rattle-")) continue;
             INFO(problem << " " << s.name);
             const Result result = run(d, s, 10, h);
             if (s.order > 1) CHECK(result.energy_error < 2e-2 * scale * (h / 1e-3) * (h / 1e-3));

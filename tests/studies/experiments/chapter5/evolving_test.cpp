@@ -110,8 +110,8 @@ TEST_CASE("integrators list the features that they take and reject others", "[st
         INFO(s["name"]);
         const lie::Scheme& scheme = lie::scheme(s["name"]);
         for (const lie::FeatureText& f : lie::all_features()) {
-            const auto listed = std::count(s["takes"].begin(), s["takes"].end(), std::string(f.key));
-            CHECK(listed == (scheme.takes.contains(f.feature) ? 1 : 0));
+            const auto listed = std::count(s["supports"].begin(), s["supports"].end(), std::string(f.key));
+            CHECK(listed == (scheme.supports.contains(f.feature) ? 1 : 0));
         }
     }
     CHECK_THAT(call(in, {"integrators"}).out, Contains("contacts, implicit_friction, rolling,") &&

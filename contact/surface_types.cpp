@@ -127,7 +127,7 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key, const io::Abou
 
 Vec3 read_semi_axes(dae::ObjectReader& o)
 {
-    const Vec3 semi_axes =
+    Vec3 semi_axes =
         Vec3::Map(o.numbers("semi_axes", 3,
                             {"Semi-axes along x, y and z of the surface frame [m].", "[2.5, 3, 2]",
                              R"("items": {"type": "number", "exclusiveMinimum": 0})"})

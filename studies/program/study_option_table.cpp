@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "studies/program/study_option_table.hpp"
 
+#include "dae/model_file.hpp"
 #include "io/archive.hpp"
 #include "io/error.hpp"
 #include "io/files.hpp"
@@ -114,7 +115,8 @@ StudyOption setting_option(const run::SettingOption& setting)
     };
     const auto identity = [get = setting.get](const StudyOptions& o) { return io::written(get(o.settings)); };
     const bool is_adaptive = setting.of == run::SettingOption::Of::adaptive_steps;
-    return {setting, is_adaptive ? setting.name : "--integrator", false, read, identity};
+    return {static_cast<const io::Option&>(setting), is_adaptive ? setting.name : "--integrator", false, read,
+            identity};
 }
 
 /// Models, integrators, steps and parameters of a model

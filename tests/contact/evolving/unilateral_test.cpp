@@ -118,7 +118,7 @@ TEST_CASE("the impact of one body without friction is the same by Newton's and b
         x.body[0].omega_bar = {0.5, -1, 0.3};
         dae::start(model, x);
         contact::UnilateralStep step(model, lie::scheme("rA-half-1-momentum"), {.tolerance = 1e-13});
-        const State end = lie::march(x, step, lie::TimeGrid::over(0.4, 1e-2)).row.back();
+        State end = lie::march(x, step, lie::TimeGrid::over(0.4, 1e-2)).row.back();
         events = step.events().size();
         return end;
     };

@@ -91,6 +91,35 @@ BodyShape read_shape(ObjectReader& body)
 
 }  // namespace
 
+Motion read_motion(ObjectReader& o)
+{
+    Motion m;
+    m.r = o.vec3("r", {"Initial position r of the centre of mass [m], in the global frame.", "[0, 0, 0.5]"});
+    m.A = read_orientation(
+        o,
+        {.A = {"Initial orientation A [-]: the rotation matrix from the body frame to the global frame. "
+               "At most one of A, p, axis_angle and euler_angles may be given. If none is given, the "
+               "body frame is parallel to the global frame. The matrix must be orthogonal to within "
+               "1e-6; smaller errors are corrected.",
+               "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"},
+         .p = {"Initial orientation as Euler parameters e0, e1, e2, e3 [-] from the body frame to the "
+               "global frame; e0 is the scalar part. The length must be 1 to within 1e-6.",
+               "[0.8, 0, 0, 0.6]"},
+         .axis_angle = {"Initial orientation as a rotation from the global frame: the components ux, uy, uz "
+                        "of a unit axis [-] followed by the angle in rad. The length of the axis must be 1 "
+                        "to within 1e-6.",
+                        "[0, 0, 1, 1.5707963267948966]"},
+         .euler_angles = {"Initial orientation as Euler angles, from the body frame to the global frame.",
+                          R"({"sequence": "zxz", "angles": [0.5, 1.2, 0]})"}});
+    o.record("A", json(m.A));
+    m.rdot =
+        o.vec3("r_dot", {"Initial velocity of the centre of mass [m/s], in the global frame.", "[0, 1, 0]"},
+               Vec3::Zero());
+    m.omega_bar = o.vec3("omega", {"Initial angular velocity [rad/s], in the body frame.", "[0, 0, 6.28]"},
+                         Vec3::Zero());
+    return m;
+}
+
 void read_mass(ObjectReader& o, Body& b)
 {
     for (const char* key : {"mass", "inertia"}) o.record(key, {});  // their order in the canonical form

@@ -52,7 +52,33 @@ std::vector<std::pair<int, int>> pairs_of(ObjectReader& o, std::string_view key,
     return pairs;
 }
 
+/// Conditions on several keys of a contact, for the schema
+constexpr const char* conditions =
+    R"("oneOf": [{"required": ["body_i", "body_j", "surface_i", "surface_j"], "not": {"anyOf": [)"
+    R"({"required": ["bodies"]}, {"required": ["surface"]}]}}, {"required": ["bodies", "surface"], "not": )"
+    R"({"anyOf": [{"required": ["body_i"]}, {"required": ["body_j"]}, {"required": ["surface_i"]}, )"
+    R"({"required": ["surface_j"]}]}}], )"
+    R"("dependentSchemas": {"friction": {"if": {"properties": {"friction": {"type": "object", "required": )"
+    R"(["law"], "properties": {"law": {"enum": ["rolling", "implicit"]}}}}}, "then": {"properties": )"
+    R"({"normal": {"description": "A constraint without a fallback.", "properties": {"type": {"const": )"
+    R"("constraint"}}, "not": {"required": ["fallback"]}}}}}}, )"
+    R"("if": {"required": ["friction"], "properties": {"normal": {"properties": {"type": {"not": {"const": )"
+    R"("hertz"}}}}, "friction": {"required": ["spin"], "properties": {"law": {"const": )"
+    R"("slide-roll-spin"}}}}}, "then": {"properties": {"friction": {"description": "Without a Hertzian )"
+    R"(normal law, spin needs a modulus.", "required": ["E_star"]}}})";
+
 }  // namespace
+
+void define_contact(ObjectReader& o)
+{
+    o.defines("contact", "Contact",
+              "Contact between a surface of body i and a surface of body j: a normal force and, "
+              "optionally, friction. At the start, compliant contacts must not overlap by more than "
+              "a tenth of a radius of curvature. An entry can stand for many pairs of bodies: each "
+              "two of the bodies of a list (bodies), or each of one list with each of another "
+              "(body_i, body_j). A pair of such a group NAME has the name \"NAME: body i-body j\".",
+              conditions);
+}
 
 ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count)
 {

@@ -21,6 +21,9 @@ struct ContactPairs {
     std::string surface_i = "surface_i", surface_j = "surface_j";  ///< keys of the surfaces
 };
 
+/// Names the definition of an element of "contacts" for the schema.
+void define_contact(ObjectReader& o);
+
 /// Reads the keys body_i and body_j, or bodies. `count` is the number of bodies with mass. Throws
 /// io::PlacedError for unknown and repeated bodies and for a group without a pair.
 ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count);

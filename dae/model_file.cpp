@@ -23,21 +23,6 @@ namespace hilda::dae {
 
 namespace {
 
-/// Conditions on several keys of a contact, for the schema
-constexpr const char* contact_conditions =
-    R"("oneOf": [{"required": ["body_i", "body_j", "surface_i", "surface_j"], "not": {"anyOf": [)"
-    R"({"required": ["bodies"]}, {"required": ["surface"]}]}}, {"required": ["bodies", "surface"], "not": )"
-    R"({"anyOf": [{"required": ["body_i"]}, {"required": ["body_j"]}, {"required": ["surface_i"]}, )"
-    R"({"required": ["surface_j"]}]}}], )"
-    R"("dependentSchemas": {"friction": {"if": {"properties": {"friction": {"type": "object", "required": )"
-    R"(["law"], "properties": {"law": {"enum": ["rolling", "implicit"]}}}}}, "then": {"properties": )"
-    R"({"normal": {"description": "A constraint without a fallback.", "properties": {"type": {"const": )"
-    R"("constraint"}}, "not": {"required": ["fallback"]}}}}}}, )"
-    R"("if": {"required": ["friction"], "properties": {"normal": {"properties": {"type": {"not": {"const": )"
-    R"("hertz"}}}}, "friction": {"required": ["spin"], "properties": {"law": {"const": )"
-    R"("slide-roll-spin"}}}}}, "then": {"properties": {"friction": {"description": "Without a Hertzian )"
-    R"(normal law, spin needs a modulus.", "required": ["E_star"]}}})";
-
 constexpr About about_name = {
     .text =
         "Name in messages and results; it must be unique within its list. By default "
@@ -215,32 +200,7 @@ private:
         b.name = name;
         read_mass(o, b);
 
-        Motion m;
-        m.r = o.vec3("r",
-                     {"Initial position r of the centre of mass [m], in the global frame.", "[0, 0, 0.5]"});
-        m.A = read_orientation(
-            o,
-            {.A = {"Initial orientation A [-]: the rotation matrix from the body frame to the global frame. "
-                   "At most one of A, p, axis_angle and euler_angles may be given. If none is given, the "
-                   "body frame is parallel to the global frame. The matrix must be orthogonal to within "
-                   "1e-6; smaller errors are corrected.",
-                   "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"},
-             .p = {"Initial orientation as Euler parameters e0, e1, e2, e3 [-] from the body frame to the "
-                   "global frame; e0 is the scalar part. The length must be 1 to within 1e-6.",
-                   "[0.8, 0, 0, 0.6]"},
-             .axis_angle =
-                 {"Initial orientation as a rotation from the global frame: the components ux, uy, uz "
-                  "of a unit axis [-] followed by the angle in rad. The length of the axis must be 1 "
-                  "to within 1e-6.",
-                  "[0, 0, 1, 1.5707963267948966]"},
-             .euler_angles = {"Initial orientation as Euler angles, from the body frame to the global frame.",
-                              R"({"sequence": "zxz", "angles": [0.5, 1.2, 0]})"}});
-        o.record("A", json(m.A));
-        m.rdot = o.vec3("r_dot",
-                        {"Initial velocity of the centre of mass [m/s], in the global frame.", "[0, 1, 0]"},
-                        Vec3::Zero());
-        m.omega_bar = o.vec3(
-            "omega", {"Initial angular velocity [rad/s], in the body frame.", "[0, 0, 6.28]"}, Vec3::Zero());
+        const Motion m = read_motion(o);
         Json recorded = o.finish();
         std::erase_if(std::get<Json::Object>(recorded.value), [](const Json::Member& k) {
             return k.key == "p" || k.key == "axis_angle" || k.key == "euler_angles" || k.key == "density";
@@ -489,13 +449,7 @@ private:
     {
         std::shared_ptr<const void> shared;
         ObjectReader entry(source, v, at);
-        entry.defines("contact", "Contact",
-                      "Contact between a surface of body i and a surface of body j: a normal force and, "
-                      "optionally, friction. At the start, compliant contacts must not overlap by more than "
-                      "a tenth of a radius of curvature. An entry can stand for many pairs of bodies: each "
-                      "two of the bodies of a list (bodies), or each of one list with each of another "
-                      "(body_i, body_j). A pair of such a group NAME has the name \"NAME: body i-body j\".",
-                      contact_conditions);
+        define_contact(entry);
         const std::string entry_name = unique_name(entry, "contact", contact_names);
         const ContactPairs all = read_contact_pairs(entry, *this, model.bodies());
         for (const auto& [i, j] : all.pairs) {

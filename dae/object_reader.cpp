@@ -23,10 +23,12 @@ const std::vector<std::string> forms = {"A", "p", "axis_angle", "euler_angles"};
 
 Vec3 ObjectReader::vec3(std::string_view key, const About& about, const std::optional<Vec3>& fallback)
 {
-    const Json by_default = fallback ? json(*fallback) : Json();
-    note(key, "vector", about, fallback ? &by_default : nullptr);
+    if (records_schema()) {
+        const Json by_default = fallback ? json(*fallback) : Json();
+        note(key, "vector", about, fallback ? &by_default : nullptr);
+    }
     if (lookup(key, !fallback) == nullptr) {
-        record(key, by_default);
+        record(key, json(*fallback));
         return *fallback;
     }
     return vector(key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What a system may have besides holonomic constraints, and what a scheme must take to integrate it.
+/// What a system may have besides holonomic constraints, and what a scheme must support to integrate it.
 
 #pragma once
 
@@ -61,9 +61,9 @@ const std::vector<FeatureText>& all_features();
 /// The keys of a set, in the order of all_features()
 std::vector<std::string> keys_of(Features features);
 
-/// The features that a scheme must take to integrate the system. Springs are not among them: a scheme that
-/// does not take them evaluates them as other loads. Neither is a history, which depends on the state. A
-/// scheme that does not take it refuses it in its first step.
+/// The features that a scheme must support to integrate the system. Springs are not among them: a scheme that
+/// does not support them evaluates them as other loads. Neither is a history, which depends on the state: a
+/// scheme that does not support it refuses it in its first step.
 Features features_of(const System& system);
 
 }  // namespace hilda::lie

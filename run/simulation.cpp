@@ -61,6 +61,8 @@ void Simulation::collect_warnings(const SimulationSetup& setup)
         add("unstable_step", {std::move(unstable)});
 }
 
+Simulation::~Simulation() = default;
+
 void Simulation::make_events(const dae::Description& description, RunTables& table, bool of_caller)
 {
     if (const std::string why =
@@ -159,8 +161,10 @@ void Simulation::apply(const std::vector<double>& loads)
     if (progress->number() == 0) {
         dae::set_start_accelerations(model, x);
     } else if (!stepper->is_staggered() && model.bounded_pairs().empty()) {
-        lie::Saddle K(model);
-        lie::solve_accelerations(model, K, x);
+        if (!saddle) saddle = std::make_unique<lie::Saddle>(model);
+        // New pivots: the digits must not depend on the nodes before.
+        saddle->choose_pivots(x);
+        lie::solve_accelerations(model, *saddle, x);
     }
     // The solution has a kink here. The internal steps of an adaptive scheme end beyond the node.
     if (stepper->chooses_internal_steps()) x.history.resize(0);
@@ -175,11 +179,11 @@ lie::State Simulation::complete_node() const
         void accepted(const lie::State& node, long /*n*/, int /*iterations*/) override { x = node; }
         lie::State x;
     } copy;
-    const auto integrator = contact::make_integrator(model, scheme, settings);
-    PivotNode of_integrator(*integrator);
-    restore(*integrator, of_integrator, record_of_integrator());
+    if (!completing) completing = contact::make_integrator(model, scheme, settings);
+    PivotNode of_integrator(*completing);
+    restore(*completing, of_integrator, record_of_integrator());
     lie::Observer* observers[] = {&copy};
-    lie::March(progress->node(), *integrator, grid_of_run.h, progress->number()).finish(observers);
+    lie::March(progress->node(), *completing, grid_of_run.h, progress->number()).finish(observers);
     return copy.x;
 }
 
@@ -217,12 +221,10 @@ bool Simulation::step()
     } catch (const lie::Interrupted&) {  // the current node is unchanged
         throw;
     } catch (const StoppedByEvent& event) {
-        counted = false, begin_seconds = thread_seconds();
-        count();
+        count_step();
         ended_at(event);
     } catch (const io::NumericalFailure& failure) {
-        counted = false, begin_seconds = thread_seconds();
-        count();
+        count_step();
         failed(failure);
         if (result.failed()) throw io::NumericalFailure(result.status, result.text());
     }
@@ -245,6 +247,13 @@ void Simulation::count()
     result.statistics = statistics();
     result.t = progress->node().t;
     result.step_seconds += thread_seconds() - begin_seconds;
+}
+
+/// The same after a step() that ends the run. The time of single steps is not measured.
+void Simulation::count_step()
+{
+    counted = false, begin_seconds = thread_seconds();
+    count();
 }
 
 const Outcome& Simulation::run(StepLoop* loop)

@@ -27,6 +27,10 @@
 #include <string>
 #include <vector>
 
+namespace hilda::lie {
+class Saddle;
+}
+
 namespace hilda::run {
 
 struct SimulationSetup {
@@ -61,7 +65,7 @@ struct Outcome {
     std::string stopped_by;  ///< name of the event that ended the run
     double t = 0;            ///< of the last complete node, or of the event [s]
     lie::Statistics statistics = {};  ///< of all steps up to the last node, also of those before a resumption
-    /// CPU time of this thread [s], of the construction and of the steps
+    /// CPU time of this thread [s], of the construction and of the steps in run()
     double setup_seconds = 0, step_seconds = 0;
 
     bool failed() const { return status != "ok" && status != "stopped" && status != "interrupted"; }
@@ -99,6 +103,7 @@ public:
     /// lie::InvalidInput if the scheme does not support the model. Model, description and scheme must outlive
     /// the simulation.
     explicit Simulation(SimulationSetup setup);
+    ~Simulation();
     Simulation(const Simulation&) = delete;
 
     /// What the checks found without refusing the run. The names are grid, model, soft_friction, dropped_row
@@ -152,7 +157,7 @@ public:
     /// node of a staggered scheme (lie::Integrator::is_staggered()) are those of the step that ends there.
     const lie::State& state() const { return at_event ? *at_event : progress->node(); }
     /// The same state as an observer will receive it if the loads remain: velocities, accelerations and
-    /// multipliers are those of its time. A staggered scheme computes an additional step with a new
+    /// multipliers are those of its time. A staggered scheme computes an additional step with another
     /// integrator.
     lie::State complete_node() const;
     long number() const { return progress->number(); }
@@ -180,6 +185,7 @@ private:
     SimulationRecord record_of_integrator() const;
     void restore(lie::Integrator& integrator, PivotNode& pivots, const SimulationRecord& from) const;
     void count();
+    void count_step();
     void march_to_end(StepLoop* loop);
     void ended_at(const StoppedByEvent& event);
     void failed(const io::NumericalFailure& failure);
@@ -197,7 +203,9 @@ private:
     std::optional<PivotNode> pivots;
     lie::Statistics earlier;  ///< of the steps before a resumption, minus those of its preparation
     std::optional<lie::March> progress;
-    std::optional<lie::State> at_event;  ///< the last state, if an event ended the run
+    std::optional<lie::State> at_event;                   ///< the last state, if an event ended the run
+    std::unique_ptr<lie::Saddle> saddle;                  ///< for set_loads(), made when it is first needed
+    mutable std::unique_ptr<lie::Integrator> completing;  ///< for complete_node(), the same
     std::vector<lie::Observer*> observers, checked;
     std::vector<lie::Observer*> all;  ///< in the order of their calls; empty: to be listed by begin()
     Outcome result;

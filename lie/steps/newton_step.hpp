@@ -43,7 +43,7 @@ protected:
 
     /// Whether loads depend on a history through the internal states of x: friction, plasticity
     bool has_history(const State& x) const;
-    /// For schemes that do not take a history: throws InvalidInput "integrator SCHEME: WHY" if they do.
+    /// For schemes without Feature::history: throws InvalidInput "integrator SCHEME: WHY" for loads with one.
     void refuse_history(const State& x, std::string_view scheme, std::string_view why) const;
 
     // For schemes with the unknowns z = (motion of the bodies, multipliers, algebraic variables), scaled:

@@ -38,8 +38,9 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
         force: overwrite a folder that is not empty.
         resume: continue the run in the folder from its last checkpoint, also to a later end.
 
-    Returns the result that was written. The warnings of the mechanism are SimulationWarnings as well. Other threads of Python run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which
-    `resume` continues, and raises KeyboardInterrupt.
+    Returns the result that was written. The warnings of the mechanism are SimulationWarnings as well. Other threads of Python
+    run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which `resume` continues, and raises
+    KeyboardInterrupt.
 
     Raises:
         InvalidInput, UsageError, FileError: before the run.

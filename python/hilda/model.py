@@ -84,9 +84,9 @@ class Model:
 
         Functions that are not given are computed by differences, with relative errors of about 1e-9 if the rows change
         smoothly over lengths of 1 mm and more. Those that are given are compared with differences at the start: each run
-        has a SimulationWarning for one that is wrong. nu and gamma by differences are refused where the estimated error exceeds 1e-5. The functions must be
-        defined a little outside of the run, also before its start. A call takes about 2 us, and differences take 48 of
-        them for `variation`.
+        has a SimulationWarning for one that is wrong. nu and gamma by differences are refused where the estimated error
+        exceeds 1e-5. The functions must be defined a little outside of the run, also before its start. A call takes about
+        2 us, and differences take 48 of them for `variation`.
         """
         if not callable(type):
             return self._add("constraints", {"type": type, **keys})
@@ -261,8 +261,9 @@ class Model:
         core = self._core()
         settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
                         rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
-        outcome = _hilda._run(core, _used("run", core, integrator), end, step, interval, settings_as_text("run", _keywords, settings), force,
-                              warn, reactions, [columns] if isinstance(columns, str) else list(columns), observer)
+        outcome = _hilda._run(core, _used("run", core, integrator), end, step, interval,
+                              settings_as_text("run", _keywords, settings), force, warn, reactions,
+                              [columns] if isinstance(columns, str) else list(columns), observer)
         error = outcome.pop("error")
         findings = outcome.pop("findings")
         result = Result(core, outcome)

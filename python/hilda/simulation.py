@@ -58,7 +58,8 @@ class Simulation:
         settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
                         rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
         self._core = _hilda._Simulation(core, _used("Simulation", core, integrator), end, step, interval,
-                                        settings_as_text("Simulation", ("integrator", "step", "end", "interval", "force"), settings),
+                                        settings_as_text("Simulation", ("integrator", "step", "end", "interval", "force"),
+                                                         settings),
                                         force, warn)
 
     def step(self) -> bool:
@@ -77,7 +78,8 @@ class Simulation:
     def advance(self, t: float) -> bool:
         """Computes the nodes up to the time t [s]. Returns whether it is reached: False after an event that ends the run.
 
-        At the end of the run the last node is checked and searched for events, as by the last call of step(). t must be a node: a multiple of the step, or of the interval of adaptive steps, up to rounding. UsageError otherwise.
+        At the end of the run the last node is checked and searched for events, as by the last call of step(). t must be a
+        node: a multiple of the step, or of the interval of adaptive steps, up to rounding. UsageError otherwise.
         """
         try:
             reached = self._core.advance(t)
@@ -102,7 +104,8 @@ class Simulation:
 
         Integrators of the families rA-half-1, rA-half-2, rp-half-1 and reps-half-1 compute the multipliers and accelerations of
         a node in the step that begins there. Until then the state has those of the step before, and those of leapfrog extrapolate
-        the velocities from the last two half steps; complete_state() has those of the node, with which Model.run() writes its rows. After an event that has ended the run, the state is that of the event.
+        the velocities from the last two half steps; complete_state() has those of the node, with which Model.run()
+        writes its rows. After an event that has ended the run, the state is that of the event.
         """
         return self._core.state
 
@@ -206,7 +209,8 @@ class Simulation:
 
     def restore(self, data: bytes) -> None:
         """Continues from a checkpoint of this simulation, or of another one with the same model, integrator, settings and step.
-        The end may differ; adaptive steps then need the same `interval`, whose default is end/1000. The steps have the digits of a run without the interruption.
+        The end may differ; adaptive steps then need the same `interval`, whose default is end/1000. The steps
+        have the digits of a run without the interruption.
 
         Functions of the model are compared by their names: they must be the same, and any data that they hold are not part of
         the checkpoint.

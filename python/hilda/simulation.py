@@ -20,7 +20,7 @@ from .warn import warn
 
 
 class Simulation:
-    """A run of a model that is advanced step by step, with the checks of Model.run() and the same positions.
+    """A run of a model that is advanced step by step, with the checks of Model.run() and the same positions::
 
         sim = hilda.Simulation("double_pendulum", end=2)
         while sim.step():

@@ -29,7 +29,7 @@ double thread_seconds()
 
 Simulation::Simulation(SimulationSetup setup)
     : model(setup.model), scheme(setup.scheme), grid_of_run(setup.grid), settings(setup.settings),
-      action(setup.watch)
+      action(setup.watch), before_step(std::move(setup.before_step))
 {
     const double begin = thread_seconds();
     const bool of_caller = setup.integrator != nullptr;
@@ -137,15 +137,14 @@ void Simulation::set_loads(const lie::Loads& loads)
                " stores past steps outside the state; loads between steps need another integrator");
     const auto bodies = static_cast<size_t>(model.bodies());
     if (loads.F.size() != bodies || loads.n_bar.size() != bodies)
-        lie::reject("run::Simulation::set_loads", "F and n_bar need a vector for each body, F has",
+        lie::reject("run", "the loads F and n_bar need a vector for each body, F has",
                     static_cast<double>(loads.F.size()));
     std::vector<double> numbers;
     for (size_t b = 0; b < bodies; ++b)
         for (const lie::Vec3* load : {&loads.F[b], &loads.n_bar[b]}) {
             if (!load->allFinite())
-                throw lie::InvalidInput(
-                    fmt::format("run::Simulation::set_loads: the loads on body '{}' are not finite",
-                                model.body_name(static_cast<int>(b))));
+                throw lie::InvalidInput(fmt::format("run: the loads on body '{}' are not finite",
+                                                    model.body_name(static_cast<int>(b))));
             numbers.insert(numbers.end(), load->begin(), load->end());
         }
     const std::vector<double>& before = progress->node().applied_loads;
@@ -207,6 +206,12 @@ void Simulation::begin()
     open_events();
 }
 
+void Simulation::advance()
+{
+    if (before_step) before_step(*progress);
+    progress->advance(all);
+}
+
 bool Simulation::step()
 {
     if (result.failed())
@@ -216,7 +221,7 @@ bool Simulation::step()
     if (all.empty()) begin();
     result.status = "ok";
     try {
-        progress->advance(all);
+        advance();
         return true;
     } catch (const lie::Interrupted&) {  // the current node is unchanged
         throw;
@@ -226,8 +231,8 @@ bool Simulation::step()
     } catch (const io::NumericalFailure& failure) {
         count_step();
         failed(failure);
-        if (result.failed()) throw io::NumericalFailure(result.status, result.text());
     }
+    if (result.failed()) throw io::NumericalFailure(result.status, result.text());
     return false;
 }
 
@@ -256,14 +261,14 @@ void Simulation::count_step()
     count();
 }
 
-const Outcome& Simulation::run(StepLoop* loop)
+const Outcome& Simulation::run(const std::function<Next()>& next)
 {
     if (ended) return result;
     begin();
     result.status = "ok";
     counted = false, begin_seconds = thread_seconds();
     try {
-        march_to_end(loop);
+        march_to_end(next);
     } catch (const StoppedByEvent& event) {
         count();
         ended_at(event);
@@ -281,23 +286,20 @@ const Outcome& Simulation::run(StepLoop* loop)
     return result;
 }
 
-void Simulation::march_to_end(StepLoop* loop)
+void Simulation::march_to_end(const std::function<Next()>& next)
 {
-    using Next = StepLoop::Next;
-    Next next = Next::step;
+    Next now = Next::step;
     while (progress->number() < grid_of_run.steps) {
-        if (loop != nullptr) next = loop->before_step(*progress);
-        if (next != Next::step) break;
-        progress->advance(all);
-        if (loop != nullptr) loop->after_step(*progress);
+        if (next) now = next();
+        if (now != Next::step) break;
+        advance();
     }
     count();
-    if (next == Next::interrupt) {
+    if (now == Next::interrupt) {
         result.status = "interrupted";
         return;
     }
-    if (next == Next::stop) result.status = "stopped";
-    if (loop != nullptr && next == Next::step) loop->before_finish(*progress);
+    if (now == Next::stop) result.status = "stopped";
     progress->finish(all);
 }
 

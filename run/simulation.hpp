@@ -50,6 +50,8 @@ struct SimulationSetup {
     RunTables* event_table = nullptr;
     /// Instead of the one that the scheme makes; nullptr: none. There are no events with it.
     std::unique_ptr<lie::Integrator> integrator = nullptr;
+    /// Called before each step; a failure in it is one of the step
+    std::function<void(lie::March&)> before_step = nullptr;
     /// Called with each of the warnings() when it is found, also before a refusal
     std::function<void(const Finding&)> warn = nullptr;
 };
@@ -75,26 +77,15 @@ struct Outcome {
     void throw_failure() const;
 };
 
-/// What a caller does between the steps of a simulation
-class StepLoop {
+class Simulation {
 public:
+    /// What run() does next
     enum class Next {
         step,
         stop,      ///< the current node is the last one, and is passed to the observers
         interrupt  ///< the current node is kept for a resumed run, and is not passed to them
     };
 
-    virtual ~StepLoop() = default;
-    /// Before each step
-    virtual Next before_step(lie::March& march) = 0;
-    /// After each step
-    virtual void after_step(const lie::March& /*march*/) {}
-    /// After the last step, before the observers receive its node
-    virtual void before_finish(const lie::March& /*march*/) {}
-};
-
-class Simulation {
-public:
     /// Makes the integrator and checks, in this order: end and rows, warnings of the model, friction that is
     /// too soft, rows that were dropped, prescribed motions and stability, whether the scheme can have the
     /// events of the model. The setup is moved from.
@@ -135,13 +126,14 @@ public:
     /// the run has ended, or for a scheme that stores past steps outside the state.
     void set_loads(const lie::Loads& loads);
 
-    /// Computes the steps that are left, and passes the nodes to the observers, each once. After an
-    /// interruption it can be called again; after another end it returns the same outcome.
+    /// Computes the steps that are left, and passes the nodes to the observers, each once. `next` is called
+    /// before each step. After an interruption run() can be called again; after another end it returns the
+    /// same outcome.
     ///
     /// Exceptions other than io::NumericalFailure, lie::Interrupted and StoppedByEvent, of observers or of
     /// user code in the model, are thrown on. outcome() then has what was known before. With
     /// Watch::Action::record the node at the start of a failed step is not passed to the observers.
-    const Outcome& run(StepLoop* loop = nullptr);
+    const Outcome& run(const std::function<Next()>& next = nullptr);
     /// Computes one step. Returns false, without a step, at the end of the grid or after an event that ends
     /// the run. run() then computes the steps that are left, and passes the last node.
     ///
@@ -186,7 +178,8 @@ private:
     void restore(lie::Integrator& integrator, PivotNode& pivots, const SimulationRecord& from) const;
     void count();
     void count_step();
-    void march_to_end(StepLoop* loop);
+    void advance();
+    void march_to_end(const std::function<Next()>& next);
     void ended_at(const StoppedByEvent& event);
     void failed(const io::NumericalFailure& failure);
     void report(const io::NumericalFailure& failure);
@@ -196,6 +189,7 @@ private:
     lie::TimeGrid grid_of_run;
     const lie::Settings settings;
     const Watch::Action action;
+    const std::function<void(lie::March&)> before_step;
     std::unique_ptr<lie::Integrator> stepper;
     std::vector<Finding> found;
     std::unique_ptr<RunEvents> events_of_model;

@@ -4,28 +4,22 @@
 #pragma once
 
 #include "dae/model_file.hpp"
-#include "io/error.hpp"
-#include "io/program.hpp"
+#include "io/resumable.hpp"
 #include "lie/schemes.hpp"
-#include "lie/trajectory.hpp"
-#include "run/progress.hpp"
-#include "run/recording/checkpoint.hpp"
+#include "run/earlier_run.hpp"
 #include "run/recording/recorder.hpp"
 #include "run/run_options.hpp"
 #include "run/simulation.hpp"
 #include "run/summary.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace hilda::run {
 
-/// --resume in the directory of a run that has ended, without a later end
-struct RunHasEnded : io::UsageError {
-    using UsageError::UsageError;
-};
-
-class SingleRun : private io::Verbosity {
+class SingleRun : private io::Resumable {
 public:
     /// Options and scheme must outlive this object.
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
@@ -36,40 +30,47 @@ public:
     RunResult execute();
 
 private:
-    using Clock = std::chrono::steady_clock;
+    bool read() override;
+    void restore(const std::string& bytes, const std::string& file) override;
+    void check() override;
+    void clear() override;
+    void open() override;
+    bool at_end() const override;
+    bool next_step() override;
+    void end() override;
+    void failed(const io::NumericalFailure& failure) override;
+    void close() override;
+    std::string summary() override;
 
-    void read();
-    void load_checkpoint();
-    /// io::UsageError if the checkpoint is from another run, or if this run does not end after it
-    void check_continues() const;
+    double time() const override { return simulation ? simulation->state().t : earlier.from->node.t; }
+    void show(io::ProgressLine& on, Clock::time_point now) const override;
+    void before_save() override;
+    void write(const io::Append& append) override;
+    bool can_be_resumed() const override { return scheme.resumes; }
+    bool can_be_extended() const override { return !final_checkpoint.empty(); }
+
+    void prepare_coupling();
     void refuse_events() const;
-    void clear_directory() const;
-    RunSettings settings_of_run();
+    void make_simulation();
     /// The text of model.json
     std::string text_of_model() const;
-    class Loop;
-    void march(Simulation& simulation, Recorder& recorder);
-    void ended(Simulation& simulation, Recorder& recorder);
-    std::string checkpoint(Simulation& simulation, Recorder& recorder) const;
-    void save_checkpoint(Simulation& simulation, Recorder& recorder);
+    std::string checkpoint();
     void add_warning(const std::string& what);
-    void check_contacts();
-    void finish(Simulation& simulation, const Recorder& recorder);
-
-    std::string path(const std::string& file) const { return directory + '/' + file; }
+    std::vector<std::string> files_of_run();
 
     const RunOptions& options;
     const lie::Scheme& scheme;
     const std::string directory;
     dae::Description description;
     lie::TimeGrid grid;
+    EarlierRun earlier;
     RunSettings settings;
-    std::optional<Checkpoint> from;  ///< of a resumed run
-    std::string from_file;
-    bool extends = false;  ///< continues a run that has ended
-    std::string
-        final_checkpoint;  ///< before the last node is written; empty if the run did not reach its end
-    Clock::time_point begin;
+    std::shared_ptr<RunTables> tables;
+    std::optional<Simulation> simulation;
+    std::optional<Recorder> recorder;
+    std::optional<RefinedRuns> refined;  ///< of --error
+    /// Before the last node is written; empty if the run did not reach its end
+    std::string final_checkpoint;
     double earlier_seconds = 0;  ///< wall time before the checkpoint [s]
     RunResult result;
 };

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/summary.hpp"
 
+#include "contact/evolving/unilateral.hpp"
+#include "dae/model_file.hpp"
 #include "io/files.hpp"
 #include "io/message.hpp"
+#include "io/provenance.hpp"
 #include "lie/integrator.hpp"
+#include "lie/schemes.hpp"
+#include "run/columns/contact_rows.hpp"
 #include "run/diagnosis.hpp"
 #include "run/provenance.hpp"
+#include "run/recording/setting_options.hpp"
+#include "run/run_options.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +28,53 @@ double per_step(const lie::Statistics& s)
     return static_cast<double>(s.iterations) / static_cast<double>(std::max(1L, s.steps));
 }
 
+std::string event_name(contact::ContactEvent::Type type)
+{
+    using Type = contact::ContactEvent::Type;
+    return type == Type::lift_off  ? "lift-off"
+           : type == Type::impact  ? "impact"
+           : type == Type::closing ? "closing"
+                                   : "fallback";
+}
+
 }  // namespace
+
+void describe(RunResult& r, const RunOptions& options, const lie::Scheme& scheme,
+              const dae::Description& description, const lie::TimeGrid& grid)
+{
+    r.model = description.name;
+    r.integrator = scheme.name;
+    r.step = grid.h;
+    r.interval = static_cast<double>(grid.interval) * grid.h;
+    r.settings = settings_json(options.settings, &scheme);
+    if (scheme.adaptive) {
+        r.rtol = options.settings.rtol;
+        r.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
+    }
+    r.bodies = description.model->bodies();
+    r.constraints = description.model->constraints();
+    for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
+        r.contacts.push_back(c->name);
+    r.set = description.changes;
+    r.parameters = description.parameters;
+    r.command_line = options.command_line;
+    std::vector<std::string> inputs = options.inputs;
+    inputs.insert(inputs.end(), description.files.begin(), description.files.end());
+    r.inputs = io::inputs(inputs);
+    r.threads = 1;  // the number used, independent of --threads
+}
+
+std::vector<RunResult::Event> contact_events(const lie::Integrator& integrator, const dae::Model& model,
+                                             double t)
+{
+    std::vector<RunResult::Event> all;
+    if (const auto* unilateral = dynamic_cast<const contact::UnilateralStep*>(&integrator))
+        for (const contact::ContactEvent& e : unilateral->events())
+            if (e.t <= t)
+                all.push_back({e.t, model.general_constraints()[static_cast<size_t>(e.contact)]->name,
+                               event_name(e.type), e.speed});
+    return all;
+}
 
 io::Json summary(const RunResult& r)
 {

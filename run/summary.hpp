@@ -6,6 +6,7 @@
 #include "dae/start.hpp"
 #include "io/json.hpp"
 #include "lie/statistics.hpp"
+#include "lie/trajectory.hpp"
 #include "run/columns/invariants.hpp"
 #include "run/error_estimate.hpp"
 #include "run/events/run_events.hpp"
@@ -15,7 +16,16 @@
 #include <string>
 #include <vector>
 
+namespace hilda::dae {
+struct Description;
+}
+namespace hilda::lie {
+struct Scheme;
+}
+
 namespace hilda::run {
+
+struct RunOptions;
 
 struct RunResult {
     std::string status = "ok", message;
@@ -55,6 +65,16 @@ struct RunResult {
     std::string directory;
     std::vector<std::string> files;  ///< written into the directory
 };
+
+/// Sets what is known before the steps: the model, the integrator and its settings, the time grid, the input
+/// files.
+void describe(RunResult& result, const RunOptions& options, const lie::Scheme& scheme,
+              const dae::Description& description, const lie::TimeGrid& grid);
+
+/// The events of the unilateral contacts up to the time t [s], without those of the additional step beyond
+/// the end that completes the last node
+std::vector<RunResult::Event> contact_events(const lie::Integrator& integrator, const dae::Model& model,
+                                             double t);
 
 /// The contents of summary.json
 io::Json summary(const RunResult& result);

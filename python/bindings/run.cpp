@@ -152,33 +152,21 @@ py::object with_traceback(const py::error_already_set& error)
     return error.trace() ? error.value().attr("with_traceback")(error.trace()) : error.value();
 }
 
-/// Signals of Python, and an observer that ends the run
-class PythonLoop final : public run::StepLoop {
-public:
-    PythonLoop(Signals& signals, const PythonObserver* observer) : signals(signals), observer(observer) {}
-
-    Next before_step(lie::March& /*march*/) override
-    {
-        if (signals.raised()) return Next::interrupt;
-        return observer != nullptr && observer->stopped ? Next::stop : Next::step;
-    }
-
-private:
-    Signals& signals;
-    const PythonObserver* const observer;
-};
-
 /// Exceptions of Python code - observers, forces, integrators - are not failures of the simulation. They do
 /// not replace one: code beyond the failure may have raised them.
 Ended march(run::Simulation& simulation, const PythonObserver* observer)
 {
     Ended ended;
     Signals signals;
-    PythonLoop loop(signals, observer);
+    const auto next = [&] {
+        using Next = run::Simulation::Next;
+        if (signals.raised()) return Next::interrupt;
+        return observer != nullptr && observer->stopped ? Next::stop : Next::step;
+    };
     std::string raised;  // status of an exception
     try {
         const py::gil_scoped_release release;
-        simulation.run(&loop);
+        simulation.run(next);
     } catch (const py::error_already_set& error) {
         raised = error.matches(PyExc_KeyboardInterrupt) ? "interrupted" : "error";
         ended.error = with_traceback(error);

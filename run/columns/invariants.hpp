@@ -7,6 +7,8 @@
 #include "run/columns/contact_rows.hpp"
 
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace hilda::run {
 
@@ -45,5 +47,10 @@ struct Invariants {
     void update(const dae::Model& model, const std::vector<const contact::EvolvingContact*>& contacts,
                 const lie::State& x, double energy, double constraint_norm);
 };
+
+/// What the extreme values show to be wrong in a run: λ_N is not zero if a surface returns normals that are
+/// not those of its points; a negative F_N in a bilateral contact means that bodies free to separate would
+/// have separated; the residual of constraints with redundant rows is large.
+std::vector<std::string> warnings(const Invariants& of, const dae::Model& model);
 
 }  // namespace hilda::run

@@ -57,17 +57,12 @@ private:
     const long fails_at;
 };
 
-class StopAt final : public run::StepLoop {
-public:
-    StopAt(long at, Next how) : at(at), how(how) {}
-    Next before_step(lie::March& march) override { return march.number() == at ? how : Next::step; }
-    void before_finish(const lie::March& march) override { finished_at = march.number(); }
-    long finished_at = -1;
-
-private:
-    const long at;
-    const Next how;
-};
+/// At the node with this number
+std::function<Simulation::Next()> next_at(const Simulation& simulation, long number, Simulation::Next what)
+{
+    return
+        [&simulation, number, what] { return simulation.number() == number ? what : Simulation::Next::step; };
+}
 
 }  // namespace
 
@@ -121,7 +116,7 @@ TEST_CASE("a simulation gives the nodes of lie::march, and counts its steps", "[
 
 TEST_CASE("a simulation ends by its caller, at a node or between two nodes", "[run][simulation]")
 {
-    using Next = run::StepLoop::Next;
+    using Next = Simulation::Next;
     const Oscillator of;
     for (const auto& [how, status, last] :
          {std::tuple{Next::stop, "stopped", 5L}, {Next::interrupt, "interrupted", 4L}}) {
@@ -131,14 +126,12 @@ TEST_CASE("a simulation ends by its caller, at a node or between two nodes", "[r
                                .grid = lie::TimeGrid::over(0.1, 1e-4)});
         Nodes nodes;
         simulation.observe(nodes);
-        StopAt loop(5, how);
-        const Outcome outcome = simulation.run(&loop);
+        const Outcome outcome = simulation.run(next_at(simulation, 5, how));
         CAPTURE(status);
         CHECK(outcome.status == status);
         CHECK_FALSE(outcome.failed());
         CHECK(nodes.number.back() == last);
         CHECK(outcome.t == Approx(5e-4));
-        CHECK(loop.finished_at == -1);  // not the last node of the grid
     }
 }
 
@@ -208,17 +201,17 @@ TEST_CASE("steps and a run give the nodes of a run, each once, and a second run 
     CHECK(of_whole.number == std::vector<long>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
 
     // An interrupted run continues; a run that was stopped does not.
-    using Next = run::StepLoop::Next;
+    using Next = Simulation::Next;
     Simulation interrupted(setup()), stopped(setup());
     Nodes of_interrupted, of_stopped;
     interrupted.observe(of_interrupted);
     stopped.observe(of_stopped);
-    StopAt interrupt(5, Next::interrupt), stop(5, Next::stop);
-    CHECK(interrupted.run(&interrupt).status == "interrupted");
+    const auto stop = next_at(stopped, 5, Next::stop);
+    CHECK(interrupted.run(next_at(interrupted, 5, Next::interrupt)).status == "interrupted");
     CHECK(interrupted.run().status == "ok");
     CHECK(of_interrupted.number == of_whole.number);
     CHECK(interrupted.state().body[0].r == whole.state().body[0].r);
-    CHECK(stopped.run(&stop).status == "stopped");
+    CHECK(stopped.run(stop).status == "stopped");
     CHECK(stopped.run().status == "stopped");
     CHECK(of_stopped.number == std::vector<long>{0, 1, 2, 3, 4, 5});
 }

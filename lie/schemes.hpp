@@ -26,6 +26,9 @@ struct SchemeOption {
     double default_value = 0;
 };
 
+/// The options of a scheme with Newton's method on the saddle-point system
+inline const std::vector<std::string> newton_options = {"--tolerance", "--max-iterations", "--linear-solver"};
+
 /// A scheme of the list: its name, its properties and its constructor.
 struct Scheme {
     std::string name;
@@ -36,7 +39,7 @@ struct Scheme {
     std::string unknowns;          ///< of the Newton iteration
     /// Names of the options of Settings that the scheme uses, as in run::setting_options(): --tolerance. An
     /// option that none of the integrators of a command uses is refused.
-    std::vector<std::string> uses = {};
+    std::vector<std::string> uses = {};      ///< newton_options, or others
     std::vector<SchemeOption> options = {};  ///< of this scheme only; schemes may share one
     std::string source;                      ///< reference
     bool adaptive = false;                   ///< whether the scheme chooses internal steps from rtol and atol

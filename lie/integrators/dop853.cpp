@@ -87,7 +87,7 @@ const bool registered_dop853 = register_with_adaptive_steps<RungeKuttaStep, dop8
      .order_lambda = 8,
      .formulation = "rA",
      .unknowns = "none; projection",
-     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+     .uses = newton_options,
      .source = "Hairer, Nørsett, Wanner (1993), with projection",
      .supports = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 

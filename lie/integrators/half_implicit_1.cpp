@@ -39,7 +39,7 @@ const bool registered_half_implicit_1 = register_scheme<HalfImplicit1>(
      .order_lambda = 1,
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda",
-     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+     .uses = newton_options,
      .source = "Fang (2022), Sec. 3.5",
      .supports = {Feature::algebraic, Feature::regularised, Feature::nonholonomic, Feature::redundant,
                   Feature::history, Feature::springs},

@@ -34,7 +34,7 @@ const bool registered_rattle =
                              .order_lambda = 2,
                              .formulation = "rA",
                              .unknowns = "r, h omega, h^2 lambda / 2",
-                             .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+                             .uses = newton_options,
                              .source = "Hante, Arnold (2021)",
                              .supports = {Feature::algebraic, Feature::redundant, Feature::history}});
 

@@ -108,7 +108,7 @@ Scheme composition(const std::string& name, int order, const std::string& source
             .order_lambda = order,
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
-            .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+            .uses = newton_options,
             .source = source,
             .supports = {Feature::redundant}};
 }

@@ -106,7 +106,7 @@ Scheme extrapolation(int order)
             .order_lambda = order,
             .formulation = "rA",
             .unknowns = "r, h omega, h^2 lambda / 2",
-            .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+            .uses = newton_options,
             .source = "Bulirsch, Stoer (1966)",
             .energy_drifts = true};
 }

@@ -61,7 +61,7 @@ const bool registered_rkmk_4 = register_scheme<Rkmk4>(
      .order_lambda = 4,
      .formulation = "rA",
      .unknowns = "none; projection",
-     .uses = {"--tolerance", "--max-iterations", "--linear-solver"},
+     .uses = newton_options,
      .source = "Munthe-Kaas (1998), with projection",
      .supports = {Feature::algebraic, Feature::nonholonomic, Feature::redundant, Feature::history}});
 

@@ -33,13 +33,11 @@ double absolute_tolerance(Text option, Text text)
 /// An option of the member of lie::Settings, with the function that reads its value
 template <class Value, class Read>
 SettingOption option_of(Value lie::Settings::*member, const std::string& name, const std::string& value,
-                        const std::string& help, Read read,
-                        SettingOption::Of of = SettingOption::Of::all_runs)
+                        const std::string& help, Read read)
 {
     return {{.name = name, .value = value, .help = help, .scope = io::Scope::numerical},
             [member, read](lie::Settings& s, Text option, Text text) { s.*member = read(option, text); },
-            [member](const lie::Settings& s) { return io::Json(s.*member); },
-            of};
+            [member](const lie::Settings& s) { return io::Json(s.*member); }};
 }
 
 /// The options of several schemes
@@ -59,21 +57,19 @@ std::vector<SettingOption> common_options()
          [](lie::Settings& s, Text option, Text text) { s.linear_solver = linear_solver(option, text); },
          [](const lie::Settings& s) { return io::Json(solvers[static_cast<size_t>(s.linear_solver)]); }},
         option_of(&lie::Settings::rho_infinity, "--rho-infinity", "RHO",
-                  "spectral radius of rA-genalpha at infinite frequency, from 0 (strongest "
-                  "damping) to 1 (no damping); default: 0.8",
+                  "spectral radius at infinite frequency, from 0 (strongest damping) to 1 (no damping); "
+                  "default: 0.8",
                   io::fraction),
         option_of(
             &lie::Settings::reparametrise, "--reparametrise", "",
             "change the body frame when Euler angles approach a singular orientation, instead of stopping",
             given),
-        option_of(
-            &lie::Settings::rtol, "--rtol", "RTOL",
-            "relative local error tolerance of adaptive steps (rA-dp-5, rA-dop853, rA-radau-5, ida-rp), "
-            "1e-14 to 0.1; default: 1e-10",
-            relative_tolerance, SettingOption::Of::adaptive_steps),
+        option_of(&lie::Settings::rtol, "--rtol", "RTOL",
+                  "relative local error tolerance of adaptive steps, 1e-14 to 0.1; default: 1e-10",
+                  relative_tolerance),
         option_of(&lie::Settings::atol, "--atol", "ATOL",
                   "absolute local error tolerance of adaptive steps, 1e-14 to 0.1; default: that of --rtol",
-                  absolute_tolerance, SettingOption::Of::adaptive_steps)};
+                  absolute_tolerance)};
     all.back().get = [](const lie::Settings& s) {
         return s.atol > 0 && s.atol != s.rtol ? io::Json(s.atol) : io::Json("as rtol");
     };
@@ -94,8 +90,25 @@ SettingOption option_of_scheme(const lie::SchemeOption& own)
                 const auto given = s.of_scheme.find(name);
                 const double value = given == s.of_scheme.end() ? otherwise : given->second;
                 return is_switch ? io::Json(value != 0) : io::Json(value);
-            },
-            SettingOption::Of::scheme};
+            }};
+}
+
+/// Names of the schemes that use an option, with fixed or with adaptive steps
+std::vector<std::string> users_of(const std::string& option)
+{
+    std::vector<std::string> names;
+    for (const lie::Scheme& scheme : lie::schemes())
+        if (scheme.uses_option(option) || scheme.with_adaptive_steps().uses_option(option))
+            names.push_back(scheme.name);
+    return names;
+}
+
+/// The first names, and the number of the others
+std::string listed(const std::vector<std::string>& names, size_t most)
+{
+    std::string text;
+    for (size_t k = 0; k < std::min(names.size(), most); ++k) text += (k == 0 ? "" : ", ") + names[k];
+    return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " others" : text;
 }
 
 }  // namespace
@@ -111,6 +124,7 @@ double relative_tolerance(Text option, Text text)
 std::vector<SettingOption> setting_options()
 {
     std::vector<SettingOption> all = common_options();
+    const size_t common = all.size();
     for (const lie::Scheme& scheme : lie::schemes())
         for (const lie::SchemeOption& own : scheme.options) {
             const auto known = std::find_if(all.begin(), all.end(), [&](const SettingOption& other) {
@@ -118,10 +132,14 @@ std::vector<SettingOption> setting_options()
             });
             if (known == all.end())
                 all.push_back(option_of_scheme(own));
-            else if (known->of != SettingOption::Of::scheme)
+            else if (known < all.begin() + static_cast<std::ptrdiff_t>(common))
                 throw std::logic_error("integrator " + scheme.name + " declares " + own.option.name +
                                        ", which is an option of all integrators");
         }
+    constexpr size_t few = 8;
+    for (SettingOption& option : all)
+        if (const std::vector<std::string> users = users_of(option.name); users.size() <= few)
+            option.help += "; for " + listed(users, few);
     return all;
 }
 
@@ -138,16 +156,11 @@ bool SettingOption::is_default(const lie::Settings& settings) const
     return io::written(get(settings)) == io::written(get({}));
 }
 
-bool SettingOption::is_recorded(const lie::Scheme& scheme) const
-{
-    return of == Of::all_runs || scheme.uses_option(name);
-}
-
 RunSettings given_settings(const lie::Settings& settings, const lie::Scheme& scheme)
 {
     RunSettings given;
     for (const SettingOption& option : setting_options())
-        if (option.scope == io::Scope::numerical && option.is_recorded(scheme) &&
+        if (option.scope == io::Scope::numerical && scheme.uses_option(option.name) &&
             !option.is_default(settings))
             given[option.name] = option.text(settings);
     return given;
@@ -165,7 +178,7 @@ io::Json settings_json(const lie::Settings& settings, const lie::Scheme* scheme)
 {
     io::Json all = io::Json::object();
     for (const SettingOption& option : setting_options())
-        if (scheme == nullptr || option.is_recorded(*scheme)) all[option.key()] = option.get(settings);
+        if (scheme == nullptr || scheme->uses_option(option.name)) all[option.key()] = option.get(settings);
     return all;
 }
 
@@ -177,15 +190,8 @@ void refuse_unused_settings(const std::string& where, const std::vector<std::str
             std::any_of(schemes.begin(), schemes.end(),
                         [&](const lie::Scheme* scheme) { return scheme->uses_option(option.name); }))
             continue;
-        std::vector<std::string> users;
-        for (const lie::Scheme& scheme : lie::schemes())
-            if (scheme.uses_option(option.name) || scheme.with_adaptive_steps().uses_option(option.name))
-                users.push_back(scheme.name);
-        constexpr size_t most = 8;
-        std::string names;
-        for (size_t k = 0; k < std::min(users.size(), most); ++k) names += (k == 0 ? "" : ", ") + users[k];
-        if (users.size() > most) names += " and " + std::to_string(users.size() - most) + " others";
-        throw io::UsageError(where + ": no selected integrator uses " + option.name + "; it is for " + names);
+        throw io::UsageError(where + ": no selected integrator uses " + option.name + "; it is for " +
+                             listed(users_of(option.name), 8));
     }
 }
 

@@ -24,25 +24,22 @@ struct SettingOption : io::Option {
     /// Sets the value from the text. io::UsageError if it is not valid.
     std::function<void(lie::Settings& settings, const std::string& option, const std::string& text)> set;
     std::function<io::Json(const lie::Settings& settings)> get;
-    /// The runs whose summary.json and checkpoint record it
-    enum class Of { all_runs, adaptive_steps, scheme } of = Of::all_runs;
-
     /// The value as the option takes it; "" for a switch
     std::string text(const lie::Settings& settings) const;
     /// Whether the value is that of a run without the option
     bool is_default(const lie::Settings& settings) const;
-    /// Whether it is recorded for runs of the scheme
-    bool is_recorded(const lie::Scheme& scheme) const;
 };
 
-/// All of them. A plug-in that is loaded later may add some.
+/// All of them. The help of an option that few schemes use ends with their names. A plug-in that is loaded
+/// later may add some.
 std::vector<SettingOption> setting_options();
 
-/// The settings on which results depend and that are not the defaults, by option: what a checkpoint records
+/// The settings that the scheme uses, on which results depend, and that are not the defaults, by option: what
+/// a checkpoint records
 RunSettings given_settings(const lie::Settings& settings, const lie::Scheme& scheme);
 /// The settings of a run with the default values of the options that are not among them, for comparisons
 RunSettings with_defaults(RunSettings settings);
-/// The settings with their values, by key: all, or those recorded for a scheme
+/// The settings with their values, by key: all, or those that a scheme uses
 io::Json settings_json(const lie::Settings& settings, const lie::Scheme* scheme = nullptr);
 
 /// io::UsageError "WHERE: ..." if an option of the table that was given is used by none of the schemes; the

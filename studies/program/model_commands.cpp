@@ -3,6 +3,7 @@
 
 #include "io/error.hpp"
 #include "io/message.hpp"
+#include "lie/schemes.hpp"
 #include "run/tables/sink.hpp"
 #include "run/watch/run_check.hpp"
 #include "studies/program/arguments.hpp"
@@ -20,6 +21,15 @@ void add_json(CLI::App& c, bool& to)
     c.add_flag("--json", to, "print the summary as JSON on stdout, and nothing else");
 }
 
+/// Names of the integrators with a property
+std::string names_of(bool (*has)(const lie::Scheme& scheme))
+{
+    std::string names;
+    for (const lie::Scheme& scheme : lie::schemes())
+        if (has(scheme)) names += (names.empty() ? "" : ", ") + scheme.name;
+    return names;
+}
+
 }  // namespace
 
 void add_run_options(CLI::App& c, RunArguments& to)
@@ -31,8 +41,9 @@ void add_run_options(CLI::App& c, RunArguments& to)
                run::default_integrator,
            append(to.integrators, integrators));
     value(c, "--step", "H",
-          "step size [s]; rA-dp-5, rA-dop853 and rA-radau-5 choose their own without it, ida-rp always; "
-          "default: 1e-3",
+          "step size [s]; " + names_of([](const lie::Scheme& s) { return s.adaptive_form != nullptr; }) +
+              " choose their own without it, and in any case " +
+              names_of([](const lie::Scheme& s) { return s.adaptive; }) + "; default: 1e-3",
           assign(o.step, positive_number));
     value(c, "--end", "T", "end time [s]; default: that of the model, with --resume that of the run",
           assign(o.end, nonnegative_number));

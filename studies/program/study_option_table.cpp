@@ -6,6 +6,7 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/json_source.hpp"
+#include "lie/schemes.hpp"
 #include "run/named_model.hpp"
 #include "run/provenance.hpp"
 #include "run/recording/setting_options.hpp"
@@ -114,7 +115,10 @@ StudyOption setting_option(const run::SettingOption& setting)
         set(to.options.settings, option, text);
     };
     const auto identity = [get = setting.get](const StudyOptions& o) { return io::written(get(o.settings)); };
-    const bool is_adaptive = setting.of == run::SettingOption::Of::adaptive_steps;
+    const std::vector<lie::Scheme>& schemes = lie::schemes();
+    const bool is_adaptive = std::none_of(schemes.begin(), schemes.end(), [&](const lie::Scheme& scheme) {
+        return !scheme.adaptive && scheme.uses_option(setting.name);
+    });
     return {static_cast<const io::Option&>(setting), is_adaptive ? setting.name : "--integrator", false, read,
             identity};
 }

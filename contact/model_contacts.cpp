@@ -18,6 +18,7 @@
 /// A key whose default depends on other keys enters the canonical text only if it is given.
 
 #include "contact/compliant/contact_force.hpp"
+#include "contact/contact_list.hpp"
 #include "contact/contact_types.hpp"
 #include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
@@ -192,7 +193,7 @@ struct ConstraintNormal {
     std::shared_ptr<const NormalLaw> fallback;  ///< nullptr if there is none
 };
 
-ConstraintNormal read_constraint_normal(ObjectReader& o, const dae::ContactPair& pair)
+ConstraintNormal read_constraint_normal(ObjectReader& o, const ContactPair& pair)
 {
     dae::defines_type(o, normal_kind, "constraint", "constraint", constraint_schema);
     ConstraintNormal settings;
@@ -309,7 +310,7 @@ void check_smooth(const ObjectReader& o, std::string_view key, const Shape& shap
                "a contact of type \"constraint\" needs a smooth surface, got a " + shape.surface->name());
 }
 
-void add_evolving(ObjectReader& o, ObjectReader normal, const dae::ContactPair& pair, const Shape& i,
+void add_evolving(ObjectReader& o, ObjectReader normal, const ContactPair& pair, const Shape& i,
                   const Shape& j)
 {
     const ConstraintNormal settings = read_constraint_normal(normal, pair);
@@ -351,7 +352,7 @@ struct Surfaces {
         return {"Surface of body j.", R"({"type": "plane"})"};
     }
 
-    Surfaces(ObjectReader& o, const dae::ContactPair& pair)
+    Surfaces(ObjectReader& o, const ContactPair& pair)
     {
         i = read_shape(o, pair.surface_i, about(pair.surface_i), text_i);
         j = pair.surface_j == pair.surface_i ? i
@@ -360,7 +361,7 @@ struct Surfaces {
     }
 };
 
-void read_contact(ObjectReader& o, const dae::ContactPair& pair)
+void read_contact(ObjectReader& o, const ContactPair& pair)
 {
     if (pair.shared == nullptr) pair.shared = std::make_shared<const Surfaces>(o, pair);
     const Surfaces& surfaces = *static_cast<const Surfaces*>(pair.shared.get());
@@ -382,7 +383,8 @@ void read_contact(ObjectReader& o, const dae::ContactPair& pair)
                                                    read_friction(o, *law)));
 }
 
-const bool registered_model_contacts = dae::register_contact_reader(read_contact);
+const bool registered_model_contacts = dae::register_contact_reader(
+    [](ObjectReader& model, const dae::PartialModel& to) { read_contacts(model, to, read_contact); });
 
 // The examples of contacts in the schema
 constexpr const char* bodies = R"({"name": "contacts", "bodies": [)"

@@ -32,7 +32,8 @@ auto central_difference(F f, const Constraint::Arguments& x, int c)
     const auto displaced = [&](double by) {
         Motion bi = x.bi, bj = x.bj;
         displace(bi, bj, c, by);
-        return f(Constraint::Arguments{bi, bj, x.t, x.alpha, x.internal_state, x.mode, x.lambda});
+        return f(Constraint::Arguments{bi, bj, x.t, x.alpha, x.internal_state, x.mode, x.lambda, x.row,
+                                       x.velocity_row});
     };
     using Value = decltype(displaced(h));  // a value, not an expression of Eigen that refers to temporaries
     return Value((displaced(h) - displaced(-h)) / (2 * h));

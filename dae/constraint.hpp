@@ -67,6 +67,7 @@ public:
         const double* internal_state = nullptr;   ///< internal_states() numbers
         int mode = active;                        ///< `active` for a constraint without modes
         const Eigen::VectorXd* lambda = nullptr;  ///< multipliers of all rows of the system, or nullptr
+        int row = 0, velocity_row = 0;            ///< first position row and velocity row in lambda
     };
 
     /// What the constraint adds to the equations. In every function that takes a row number the position rows
@@ -155,9 +156,16 @@ public:
     int i, j;  ///< body numbers, or `ground`
     std::string name;
 
-    // set by the model
-    int first_row = 0, first_velocity_row = 0;  ///< numbers of the first position row and velocity row
-    int first_internal_state = 0;               ///< index into State::internal_state
+    /// The part of a constraint in the rows and in the state of its model, see Model::place()
+    struct Place {
+        int row = 0, velocity_row = 0;      ///< numbers of its first position row and velocity row
+        int alpha = 0, internal_state = 0;  ///< indices of its first number in State
+        int discrete_state = -1;            ///< index of its mode in State; -1: it is always active
+    };
+
+private:
+    friend class Model;
+    Place place;
 };
 
 }  // namespace hilda::dae

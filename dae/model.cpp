@@ -136,7 +136,7 @@ void Model::prepare(State& x)
             throw ForceError(force[k]->label() + ": " + reason, static_cast<int>(k));
     discrete_states = internal_states = 0;
     for (Row& r : row) {
-        r.block->first_internal_state = internal_states;
+        r.block->place.internal_state = internal_states;
         internal_states += r.block->internal_states();
         r.complement.reset();
         r.branch = -1;
@@ -153,13 +153,12 @@ void Model::prepare(State& x)
     set_pattern();  // a complement may have other nonzero derivatives than its block
     int alphas = 0;
     for (ContactConstraint* c : contacts) {
-        c->first_alpha = alphas;
+        c->place.alpha = alphas;
         alphas += c->algebraic_variables();
-        c->first_discrete_state = discrete_states;
-        discrete_states += c->may_be_inactive();
+        if (c->may_be_inactive()) c->place.discrete_state = discrete_states++;
     }
     for (const auto& c : general_constraint) {
-        c->first_internal_state = internal_states;
+        c->place.internal_state = internal_states;
         internal_states += c->internal_states();
     }
     x.discrete_state.assign(discrete_states, 0);
@@ -172,8 +171,8 @@ void Model::prepare(State& x)
         };
         try {
             if (const ContactConstraint* const contact = c.as_contact(); contact != nullptr) {
-                const int mode = contact->start(arguments(c, x), x.alpha.data() + contact->first_alpha);
-                if (contact->may_be_inactive()) x.discrete_state[contact->first_discrete_state] = mode;
+                const int mode = contact->start(arguments(c, x), x.alpha.data() + c.place.alpha);
+                if (c.place.discrete_state >= 0) x.discrete_state[c.place.discrete_state] = mode;
             } else if (const std::string reason = c.start_error(arguments(c, x)); !reason.empty()) {
                 throw lie::InvalidInput(reason);
             }
@@ -273,7 +272,7 @@ std::string Model::row_name(int k) const
 {
     if (k < static_cast<int>(active.size())) return name_of(row[active[k]]);
     for (const auto& c : general_constraint) {
-        const int position_row = k - c->first_row, velocity_row = k - c->first_velocity_row;
+        const int position_row = k - c->place.row, velocity_row = k - c->place.velocity_row;
         if (position_row >= 0 && position_row < c->position_rows()) return name_of(*c, position_row);
         if (velocity_row >= 0 && velocity_row < c->velocity_rows())
             return name_of(*c, c->position_rows() + velocity_row);
@@ -288,22 +287,22 @@ void Model::set_pattern()
     for (const int k : active) add_to_pattern(k);
     int alphas = 0;
     for (const auto& c : general_constraint) {
-        c->first_row = rows_pattern.rows();
+        c->place.row = rows_pattern.rows();
         add_to_pattern(*c, 0, c->position_rows());
         if (c->algebraic_variables() > 0) {
             rows_pattern.algebraic.push_back(
-                {c->first_row, c->position_rows(), alphas, c->algebraic_variables(), {}});
+                {c->place.row, c->position_rows(), alphas, c->algebraic_variables(), {}});
             rows_pattern.algebraic.back().D.setZero(c->position_rows(), c->algebraic_variables());
         }
-        if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->first_row + c->position_rows() - 1);
+        if (c->may_be_inactive()) rows_pattern.unilateral.push_back(c->place.row + c->position_rows() - 1);
         alphas += c->algebraic_variables();
     }
     for (const auto& c : general_constraint) {
-        c->first_velocity_row = rows_pattern.rows();
+        c->place.velocity_row = rows_pattern.rows();
         add_to_pattern(*c, c->position_rows(), c->velocity_rows());
         rows_pattern.velocity_rows += c->velocity_rows();
-        for (int k = c->first_velocity_row; k < rows_pattern.rows(); ++k) {
-            const bool is_bounded = k < c->first_velocity_row + 2 * c->bounded_pairs();
+        for (int k = c->place.velocity_row; k < rows_pattern.rows(); ++k) {
+            const bool is_bounded = k < c->place.velocity_row + 2 * c->bounded_pairs();
             if (c->may_be_inactive() || is_bounded) rows_pattern.unilateral.push_back(k);
             if (is_bounded) rows_pattern.regularised.push_back(k);
         }
@@ -376,7 +375,7 @@ Model::PositionError Model::position_error(const State& x) const
     const Residual largest = largest_residual(x, RowSet::in_equations);
     if (largest.row < 0) return {};
     const auto in_equations = std::lower_bound(active.begin(), active.end(), largest.row) - active.begin();
-    const int row = largest.constraint != nullptr ? largest.constraint->first_row + largest.row
+    const int row = largest.constraint != nullptr ? largest.constraint->place.row + largest.row
                                                   : static_cast<int>(in_equations);
     return {.value = largest.value, .row = row};
 }

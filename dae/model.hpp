@@ -70,33 +70,33 @@ public:
     /// Adds a general constraint. Its rows follow those of all blocks. Throws as for blocks.
     void constrain(const std::string& name, std::unique_ptr<Constraint> constraint);
     const std::vector<std::unique_ptr<Constraint>>& general_constraints() const { return general_constraint; }
+    /// Where a constraint of this model has its rows, and its numbers in the state
+    static const Constraint::Place& place(const Constraint& c) { return c.place; }
     /// Arguments of a constraint in the state x. They refer to x.
     Constraint::Arguments arguments(const Constraint& c, const State& x) const
     {
-        const ContactConstraint* const contact = c.as_contact();
         return {motion(x, c.i),
                 motion(x, c.j),
                 x.t,
-                contact != nullptr ? x.alpha.data() + contact->first_alpha : nullptr,
-                x.internal_state.data() + c.first_internal_state,
+                x.alpha.data() + c.place.alpha,
+                x.internal_state.data() + c.place.internal_state,
                 mode(c, x),
-                &x.lambda};
+                &x.lambda,
+                c.place.row,
+                c.place.velocity_row};
     }
     /// The same for a row of a joint, which has no algebraic variables and is always active
     static Constraint::Arguments arguments(const Block& row, const State& x)
     {
         return {motion(x, row.i), motion(x, row.j), x.t, nullptr,
-                x.internal_state.data() + row.first_internal_state};
+                x.internal_state.data() + row.place.internal_state};
     }
     /// Whether a constraint is switched off. Its rows are then zero.
     static bool inactive(const Constraint& c, const State& x) { return mode(c, x) != Constraint::active; }
     /// Mode of a constraint, see Constraint::Size::may_be_inactive
     static int mode(const Constraint& c, const State& x)
     {
-        const ContactConstraint* const contact = c.as_contact();
-        return contact != nullptr && contact->may_be_inactive()
-                   ? x.discrete_state[contact->first_discrete_state]
-                   : Constraint::active;
+        return c.place.discrete_state < 0 ? Constraint::active : x.discrete_state[c.place.discrete_state];
     }
     /// Sets the mode in x, and the multipliers of the constraint to zero.
     static void set_mode(const ContactConstraint& c, State& x, int mode);

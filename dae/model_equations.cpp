@@ -73,9 +73,9 @@ void Model::phi(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     }
     for (const auto& c : general_constraint)
         if (inactive(*c, x))
-            out.segment(c->first_row, c->position_rows()).setZero();
+            out.segment(c->place.row, c->position_rows()).setZero();
         else
-            c->phi(arguments(*c, x), out.data() + c->first_row);
+            c->phi(arguments(*c, x), out.data() + c->place.row);
     out.tail(rows_pattern.velocity_rows).setZero();
 }
 
@@ -106,8 +106,8 @@ void Model::variation(const State& x, lie::Rows& out) const
             d.Phi_alpha.setIdentity();  // regular, so that the corrections of α are zero
         else
             c.variation(arguments(c, x), d);
-        fill(c, 0, c.first_row, c.position_rows());
-        fill(c, c.position_rows(), c.first_velocity_row, c.velocity_rows());
+        fill(c, 0, c.place.row, c.position_rows());
+        fill(c, c.position_rows(), c.place.velocity_row, c.velocity_rows());
         if (c.algebraic_variables() > 0) (group++)->D = d.Phi_alpha;
     }
 }
@@ -123,8 +123,8 @@ void Model::nu(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     for (const auto& c : general_constraint) {
         if (inactive(*c, x)) continue;
         c->nu(arguments(*c, x), nu_c);
-        std::copy_n(nu_c, c->position_rows(), out.data() + c->first_row);
-        std::copy_n(nu_c + c->position_rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
+        std::copy_n(nu_c, c->position_rows(), out.data() + c->place.row);
+        std::copy_n(nu_c + c->position_rows(), c->velocity_rows(), out.data() + c->place.velocity_row);
     }
 }
 
@@ -139,15 +139,15 @@ void Model::gamma(const State& x, Eigen::Ref<Eigen::VectorXd> out) const
     for (const auto& c : general_constraint) {
         std::fill(gamma_c, gamma_c + Constraint::max_rows, 0.0);
         if (!inactive(*c, x)) c->gamma(arguments(*c, x), gamma_c);
-        std::copy_n(gamma_c, c->position_rows(), out.data() + c->first_row);
-        std::copy_n(gamma_c + c->position_rows(), c->velocity_rows(), out.data() + c->first_velocity_row);
+        std::copy_n(gamma_c, c->position_rows(), out.data() + c->place.row);
+        std::copy_n(gamma_c + c->position_rows(), c->velocity_rows(), out.data() + c->place.velocity_row);
     }
 }
 
 void Model::update_alpha(State& x) const
 {
     for (const ContactConstraint* c : contacts)
-        if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->first_alpha);
+        if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->place.alpha);
 }
 
 std::vector<lie::BoundedPair> Model::bounded_pairs() const
@@ -156,8 +156,8 @@ std::vector<lie::BoundedPair> Model::bounded_pairs() const
     for (const ContactConstraint* c : contacts)
         for (int n = 0; n < c->bounded_pairs(); ++n) {
             pairs.emplace_back();
-            pairs.back().first = c->first_velocity_row + 2 * n;
-            pairs.back().normal_row = c->first_row;
+            pairs.back().first = c->place.velocity_row + 2 * n;
+            pairs.back().normal_row = c->place.row;
         }
     return pairs;
 }
@@ -183,8 +183,8 @@ void Model::for_rows_without_alpha(const State& x, F f) const
     for (const int n : active) f(row[n].active_block(x), 0, k++);
     for (const auto& c : general_constraint) {
         if (c->algebraic_variables() > 0 || inactive(*c, x)) continue;
-        for (int n = 0; n < c->position_rows(); ++n) f(*c, n, c->first_row + n);
-        for (int n = 0; n < c->velocity_rows(); ++n) f(*c, c->position_rows() + n, c->first_velocity_row + n);
+        for (int n = 0; n < c->position_rows(); ++n) f(*c, n, c->place.row + n);
+        for (int n = 0; n < c->velocity_rows(); ++n) f(*c, c->position_rows() + n, c->place.velocity_row + n);
     }
 }
 
@@ -313,9 +313,9 @@ void Model::update_constraint_states(State& x, bool start) const
 {
     for (const Row& r : row)
         r.block->update_internal_state(arguments(*r.block, x), start,
-                                       x.internal_state.data() + r.block->first_internal_state);
+                                       x.internal_state.data() + r.block->place.internal_state);
     for (const auto& c : general_constraint) {
-        double* const state = x.internal_state.data() + c->first_internal_state;
+        double* const state = x.internal_state.data() + c->place.internal_state;
         if (const ContactConstraint* const contact = c->as_contact(); contact == nullptr)
             c->update_internal_state(arguments(*c, x), start, state);
         else if (const int after = contact->update_mode(arguments(*c, x), start, state); after != mode(*c, x))
@@ -325,9 +325,9 @@ void Model::update_constraint_states(State& x, bool start) const
 
 void Model::set_mode(const ContactConstraint& c, State& x, int mode)
 {
-    x.discrete_state[c.first_discrete_state] = mode;
-    x.lambda.segment(c.first_row, c.position_rows()).setZero();
-    x.lambda.segment(c.first_velocity_row, c.velocity_rows()).setZero();
+    x.discrete_state[c.place.discrete_state] = mode;
+    x.lambda.segment(c.place.row, c.position_rows()).setZero();
+    x.lambda.segment(c.place.velocity_row, c.velocity_rows()).setZero();
 }
 
 void Model::swap_drivers(State& x) const

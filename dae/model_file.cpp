@@ -3,7 +3,6 @@
 #include "dae/model_file.hpp"
 
 #include "dae/body_reader.hpp"
-#include "dae/contact_pairs.hpp"
 #include "dae/model_types.hpp"
 #include "dae/parameters.hpp"
 #include "io/expression.hpp"
@@ -22,14 +21,6 @@
 namespace hilda::dae {
 
 namespace {
-
-constexpr About about_name = {
-    .text =
-        "Name in messages and results; it must be unique within its list. By default "
-        "the type and the position in the list, counted from 1, for example "
-        "revolute-2 (for a contact: contact-2).",
-    .example = R"("crank-pin")",
-    .computed = true};
 
 std::string lower_case(std::string word)
 {
@@ -326,16 +317,6 @@ private:
         return {unique_name(o, type.name, used_names), &type};
     }
 
-    /// A name that is not used yet. The default consists of the kind and the number in the list.
-    static std::string unique_name(ObjectReader& o, const std::string& kind,
-                                   std::set<std::string>& used_names, const About& about = about_name)
-    {
-        std::string name = o.name("name", about, kind + "-" + std::to_string(used_names.size() + 1));
-        if (!used_names.insert(name).second)
-            o.fail("name", "this name is already used, got " + described(name));
-        return name;
-    }
-
     Json constraint(const Json& v, const std::string& at)
     {
         ObjectReader o(source, v, at);
@@ -424,72 +405,13 @@ private:
         return recorded;
     }
 
-    /// The canonical form has the key only if there are contacts. It has one element for each pair of a
-    /// group.
     void contacts(ObjectReader& o)
     {
-        o.note("contacts",
-               R"("type": "array", "default": [], "items": {"type": "object", "$ref": "#/$defs/contact"})",
-               {"Contacts between surfaces of two bodies.",
-                R"([{"body_i": "ball", "body_j": "ground", "surface_i": {"type": "sphere", "radius": 0.1}, )"
-                R"("surface_j": {"type": "plane"}, "normal": {"type": "hooke", "stiffness": 1e5}}])"});
-        const Json::List& list = o.list("contacts", false);
-        if (list.empty()) return;
-        const ReadContact read = contact_reader();
-        if (read == nullptr)
+        if (const ReadContacts read = contact_reader(); read != nullptr)
+            return read(o, {.source = source, .bodies = *this, .out = out, .normal_rows = normal_rows});
+        if (const Json::List& list = o.list("contacts", false); !list.empty())
             o.fail("contacts", "this program is built without contacts; the list must be empty, got " +
                                    std::to_string(list.size()));
-        Json::List recorded;
-        for (size_t k = 0; k < list.size(); ++k)
-            contact(read, list[k], pointer_to("/contacts", std::to_string(k)), recorded);
-        o.record("contacts", std::move(recorded));
-    }
-
-    void contact(ReadContact read, const Json& v, const std::string& at, Json::List& recorded)
-    {
-        std::shared_ptr<const void> shared;
-        ObjectReader entry(source, v, at);
-        define_contact(entry);
-        const std::string entry_name = unique_name(entry, "contact", contact_names);
-        const ContactPairs all = read_contact_pairs(entry, *this, model.bodies());
-        for (const auto& [i, j] : all.pairs) {
-            ObjectReader o = entry.again();
-            const std::string name = all.is_group ? pair_name(entry_name, i, j) : entry_name;
-            o.record("name", name);
-            for (const auto& [key, number] : {std::pair("body_i", i), std::pair("body_j", j)})
-                o.find(key), o.record(key, model.body_name(number));
-            for (const char* key : {"name", "bodies"}) o.find(key);
-            const auto read_pair = [&, i = i, j = j] {
-                read(o, {.name = name,
-                         .i = i,
-                         .j = j,
-                         .model = model,
-                         .start = out.x,
-                         .normal_rows = normal_rows,
-                         .changes = out.changes,
-                         .surface_i = all.surface_i,
-                         .surface_j = all.surface_j,
-                         .shared = shared});
-            };
-            o.located([&] {
-                try {
-                    read_pair();
-                } catch (const io::PlacedError&) {
-                    throw;
-                } catch (const lie::InvalidInput& e) {
-                    if (!all.is_group) throw;
-                    throw lie::InvalidInput("contact '" + name + "': " + e.what());
-                }
-            });
-            out.force_place.resize(model.forces().size(), o.place());
-            out.general_place.resize(model.general_constraints().size(), o.place());
-            recorded.push_back(o.finish());
-        }
-    }
-
-    std::string pair_name(const std::string& group, int i, int j) const
-    {
-        return group + ": " + model.body_name(i) + '-' + model.body_name(j);
     }
 
     const JsonSource& source;
@@ -498,7 +420,7 @@ private:
     Model& model;
     std::map<std::string, int> by_name;
     std::map<int, int> by_id;
-    std::set<std::string> constraint_names, force_names, contact_names, output_names, event_names;
+    std::set<std::string> constraint_names, force_names, output_names, event_names;
     bool ground_listed = false;
     int ignored = 0;  // number of constraints with f_dot or f_ddot
     std::string ignored_place;

@@ -162,24 +162,32 @@ std::string type_with_other_name(const std::string& name)
     return found != known.end() ? found->second : "";
 }
 
+std::string unique_name(ObjectReader& o, const std::string& kind, std::set<std::string>& used,
+                        const About& about)
+{
+    std::string name = o.name("name", about, kind + "-" + std::to_string(used.size() + 1));
+    if (!used.insert(name).second) o.fail("name", "this name is already used, got " + described(name));
+    return name;
+}
+
 namespace {
 
 // A function-local variable is initialised before its first use, also during static initialisation.
-ReadContact& registered()
+ReadContacts& registered()
 {
-    static ReadContact read = nullptr;
+    static ReadContacts read = nullptr;
     return read;
 }
 
 }  // namespace
 
-bool register_contact_reader(ReadContact read)
+bool register_contact_reader(ReadContacts read)
 {
     registered() = read;
     return true;
 }
 
-ReadContact contact_reader() { return registered(); }
+ReadContacts contact_reader() { return registered(); }
 
 }  // namespace hilda::dae
 

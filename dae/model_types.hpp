@@ -14,6 +14,8 @@
 #include "io/registry.hpp"
 
 #include <array>
+#include <set>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -22,6 +24,7 @@ namespace hilda::dae {
 class Driver;
 class Force;
 class Model;
+struct Description;
 
 /// Finds bodies of the model by the name or id that a key gives. Throws io::PlacedError for an unknown body.
 class BodyFinder {
@@ -98,31 +101,34 @@ Blocks single_row(B block)
     return rows;
 }
 
-/// Arguments of the reader of a contact: its name, its two different bodies, the model with all bodies,
-/// joints, forces and the preceding contacts, and the initial data
-struct ContactPair {
-    const std::string& name;
-    int i, j;
-    Model& model;
-    const State& start;
-    const std::string& normal_rows;     ///< argument of read_model()
-    std::vector<std::string>& changes;  ///< of Description, for each contact to which normal_rows applies
-    /// Keys of the surfaces of body i and j. A group of equal bodies has one key "surface" for both.
-    std::string surface_i = "surface_i", surface_j = "surface_j";
-    /// What the reader keeps from one pair of a group for the next, empty for the first pair
-    std::shared_ptr<const void>& shared;
+/// Of an element of a list
+inline constexpr About about_name = {
+    .text =
+        "Name in messages and results; it must be unique within its list. By default "
+        "the type and the position in the list, counted from 1, for example "
+        "revolute-2 (for a contact: contact-2).",
+    .example = R"("crank-pin")",
+    .computed = true};
+/// The key "name" of an element of a list. The default consists of the kind and the number in the list.
+/// PlacedError for a name that is among those that are used.
+std::string unique_name(ObjectReader& o, const std::string& kind, std::set<std::string>& used,
+                        const About& about = about_name);
+
+/// A model file of which the bodies, joints and forces have been read
+struct PartialModel {
+    const JsonSource& source;
+    const BodyFinder& bodies;
+    Description& out;
+    const std::string& normal_rows;  ///< argument of read_model()
 };
 
-/// Reads an element of "contacts", except for the keys name, body_i, body_j and bodies, and adds the forces
-/// and general constraints of one pair of bodies to the model. It is called for each pair of a group. Throws
-/// PlacedError, or lie::InvalidInput or io::ExpressionError without a location from the constructor of the
-/// contact.
-using ReadContact = void (*)(ObjectReader& o, const ContactPair& pair);
+/// Reads the key "contacts" of the model, and adds its forces and general constraints with their places.
+using ReadContacts = void (*)(ObjectReader& model, const PartialModel& to);
 
 /// Registers the reader of contacts and returns true. It replaces the earlier one; nullptr removes it. Called
 /// during static initialisation: const bool registered = register_contact_reader(...);
-bool register_contact_reader(ReadContact read);
+bool register_contact_reader(ReadContacts read);
 /// The registered reader of contacts, or nullptr
-ReadContact contact_reader();
+ReadContacts contact_reader();
 
 }  // namespace hilda::dae

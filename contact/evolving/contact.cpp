@@ -254,13 +254,13 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, NodeState&
     }
     lie::BoundedPair pair[2];
     set_pairs(x, pair);
-    const Vec3 Psi = x.lambda->segment<3>(first_row);
+    const Vec3 Psi = x.lambda->segment<3>(x.row);
     const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
     for (const RowPair p : {sliding_pair, rolling_pair}) {
         if (p == rolling_pair && !law.has_rolling_resistance()) continue;
         NodeState::Pair& saved = p == sliding_pair ? state.sliding : state.rolling;
         const lie::BoundedPair& c = pair[p];
-        const Eigen::Vector2d lambda = x.lambda->segment<2>(first_velocity_row + 2 * p);
+        const Eigen::Vector2d lambda = x.lambda->segment<2>(x.velocity_row + 2 * p);
         saved.S += h * c.mobility(h) * (lambda - c.K * c.S);
         saved.slipping = lambda.norm() > (1 - bound_tolerance) * c.mu * N;
     }
@@ -433,9 +433,9 @@ EvolvingContact::Multipliers EvolvingContact::multipliers(const Arguments& x,
                                                           const Eigen::VectorXd& lambda) const
 {
     Multipliers m;
-    m.Psi = lambda.segment<3>(first_row);
-    m.N = lambda.segment<2>(first_row + 3);
-    m.G = lambda.segment<2>(first_row + 5);
+    m.Psi = lambda.segment<3>(x.row);
+    m.N = lambda.segment<2>(x.row + 3);
+    m.G = lambda.segment<2>(x.row + 5);
     m.rolling.setZero();
     m.friction.setZero();
     m.resistance.setZero();
@@ -443,10 +443,10 @@ EvolvingContact::Multipliers EvolvingContact::multipliers(const Arguments& x,
     m.F_N = m.Psi.dot(n);
     m.tangential = m.Psi - m.F_N * n;
     if (friction != Friction::none) {
-        m.rolling = lambda.segment<2>(first_velocity_row);
+        m.rolling = lambda.segment<2>(x.velocity_row);
         m.friction = -projected_tangents(x, n) * m.rolling;
     }
-    if (law.has_rolling_resistance()) m.resistance = lambda.segment<2>(first_velocity_row + 2);
+    if (law.has_rolling_resistance()) m.resistance = lambda.segment<2>(x.velocity_row + 2);
     return m;
 }
 

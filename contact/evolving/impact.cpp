@@ -36,7 +36,9 @@ void UnilateralStep::resolve_impact(State& x, TrackedContact& c, double h)
 
     // Without c the gap would have the acceleration -F_N/m with the effective mass m = compression/approach.
     // The contact separates if the time of flight 2 m rebound/F_N is longer than a step.
-    const auto node_state = [&] { return x.internal_state.data() + c.contact->first_internal_state; };
+    const auto node_state = [&] {
+        return x.internal_state.data() + dae::Model::place(*c.contact).internal_state;
+    };
     auto state = restored<EvolvingContact::NodeState>(node_state());
     const double rebound =
         c.stays_active || x.t - state.last_rebound < h ? 0 : unilateral.restitution * approach;
@@ -155,7 +157,7 @@ void UnilateralStep::solve_velocity_jump(State& x, const TrackedContact* rebound
         v.head(momentum.size()) += momentum;
         model.nu(x, K.constraint_part(v));
         if (rebounding != nullptr)
-            K.constraint_part(v).segment<3>(rebounding->contact->first_row) +=
+            K.constraint_part(v).segment<3>(dae::Model::place(*rebounding->contact).row) +=
                 speed * rebounding->contact->contact_point(model.arguments(*rebounding->contact, x)).n;
         K.solve_refined(v);
         x.lambda = K.constraint_part(v);

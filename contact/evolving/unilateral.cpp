@@ -89,7 +89,7 @@ void UnilateralStep::update_alpha(State& x) const
     for (const TrackedContact& c : contact)
         if (is_inactive(c, x))
             c.contact->update_alpha(model.arguments(*c.contact, x), false,
-                                    x.alpha.data() + c.contact->first_alpha);
+                                    x.alpha.data() + dae::Model::place(*c.contact).alpha);
 }
 
 int UnilateralStep::step(State& x, double h)

@@ -51,10 +51,6 @@ public:
     };
     virtual Violation position_violation(const Arguments& x, double tolerance) const = 0;
     virtual Violation velocity_violation(const Arguments& x, double tolerance) const = 0;
-
-    // set by the model
-    int first_alpha = 0;           ///< index into State::alpha
-    int first_discrete_state = 0;  ///< index into State::discrete_state
 };
 
 }  // namespace hilda::dae

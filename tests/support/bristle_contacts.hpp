@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/contact_list.hpp"
 #include "dae/model.hpp"
 #include "dae/model_types.hpp"
 #include "tests/support/bristle.hpp"
@@ -11,16 +12,21 @@ namespace hilda::tests {
 
 /// Registers the reader in the constructor and restores the previous reader in the destructor.
 struct BristleContacts {
-    const dae::ReadContact previous = dae::contact_reader();
+    const dae::ReadContacts previous = dae::contact_reader();
 
-    BristleContacts() { dae::register_contact_reader(read); }
+    BristleContacts()
+    {
+        dae::register_contact_reader([](dae::ObjectReader& model, const dae::PartialModel& to) {
+            contact::read_contacts(model, to, read);
+        });
+    }
     ~BristleContacts() { dae::register_contact_reader(previous); }
     BristleContacts(const BristleContacts&) = delete;
     BristleContacts& operator=(const BristleContacts&) = delete;
 
     /// Default of `stiffness` [N/m]: the mass of body i in kg times 1 N/(m kg). Default of `most` [m]: a
     /// tenth of the distance of the bodies at the start.
-    static void read(dae::ObjectReader& o, const dae::ContactPair& pair)
+    static void read(dae::ObjectReader& o, const contact::ContactPair& pair)
     {
         const auto r = [&](int b) { return b == dae::ground ? lie::Vec3(0, 0, 0) : pair.start.body[b].r; };
         const double mass = pair.i == dae::ground ? 1 : pair.model.mass().m[pair.i];

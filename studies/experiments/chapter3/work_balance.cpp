@@ -107,10 +107,11 @@ double WorkBalance::power_of_drivers(const lie::State& x)
             driven[static_cast<size_t>(model.all_rows()[static_cast<size_t>(active[k])].constraint)] = true;
     for (size_t c = 0; c < model.general_constraints().size(); ++c) {
         const dae::Constraint& constraint = *model.general_constraints()[c];
+        const dae::Constraint::Place& at = dae::Model::place(constraint);
         for (int k = 0; k < constraint.position_rows(); ++k)
-            if (nu[constraint.first_row + k] != 0) driven[joints + c] = true;
+            if (nu[at.row + k] != 0) driven[joints + c] = true;
         for (int k = 0; k < constraint.velocity_rows(); ++k)
-            if (nu[constraint.first_velocity_row + k] != 0) driven[joints + c] = true;
+            if (nu[at.velocity_row + k] != 0) driven[joints + c] = true;
     }
     return -x.lambda.dot(nu);
 }

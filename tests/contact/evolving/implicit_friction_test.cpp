@@ -300,7 +300,7 @@ TEST_CASE("the rolling rows are the velocity of the contact point over the bodie
     b.model.variation(b.x, C);
     Eigen::Matrix<double, 6, 1> v;
     v << ball.rdot, ball.omega_bar;
-    const int first = c.first_velocity_row;
+    const int first = dae::Model::place(c).velocity_row;
     CHECK(std::abs(C.dot(first, v)) + std::abs(C.dot(first + 1, v)) < 1e-15);
 
     constexpr double dt = 1e-5;  // central differences, error O(dt²)

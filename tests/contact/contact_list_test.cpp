@@ -32,7 +32,8 @@ std::string contact_error(const std::string& text)
 
 }  // namespace
 
-TEST_CASE("the reader of a contact receives the model and the initial data", "[dae][model_file][contacts]")
+TEST_CASE("the reader of a contact receives the model and the initial data",
+          "[contact][model_file][contacts]")
 {
     const BristleContacts reader;
     dae::Description d = dae::read_model(model(R"([
@@ -65,7 +66,7 @@ TEST_CASE("the reader of a contact receives the model and the initial data", "[d
     CHECK_THAT(dae::read_model(model("[]"), "m.json").text, !Catch::Contains("contacts"));
 }
 
-TEST_CASE("an invalid contact is rejected with its location", "[dae][model_file][contacts]")
+TEST_CASE("an invalid contact is rejected with its location", "[contact][model_file][contacts]")
 {
     const BristleContacts reader;
     struct InvalidContact {
@@ -102,9 +103,10 @@ TEST_CASE("an invalid contact is rejected with its location", "[dae][model_file]
           "m.json:1:46 (/contacts/0): bristle 'brush': the bodies must be apart at the start");
 }
 
-TEST_CASE("without a registered reader contacts are rejected", "[dae][model_file][contacts]")
+TEST_CASE("without a registered reader contacts are rejected", "[contact][model_file][contacts]")
 {
-    CHECK(dae::contact_reader() == nullptr);
+    const BristleContacts restores_the_reader;
+    dae::register_contact_reader(nullptr);
     CHECK(contact_error(model("[]")) == "");
     CHECK(contact_error(model("[{}, {}]")) ==
           "m.json:1:45 (/contacts): this program is built without contacts; the list must be empty, got 2");

@@ -5,7 +5,7 @@
 
 #include "dae/model_types.hpp"
 
-namespace hilda::dae {
+namespace hilda::contact {
 
 /// One pair, or the pairs of a group:
 ///
@@ -22,10 +22,10 @@ struct ContactPairs {
 };
 
 /// Names the definition of an element of "contacts" for the schema.
-void define_contact(ObjectReader& o);
+void define_contact(dae::ObjectReader& o);
 
 /// Reads the keys body_i and body_j, or bodies. `count` is the number of bodies with mass. Throws
 /// io::PlacedError for unknown and repeated bodies and for a group without a pair.
-ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count);
+ContactPairs read_contact_pairs(dae::ObjectReader& o, const dae::BodyFinder& bodies, int count);
 
-}  // namespace hilda::dae
+}  // namespace hilda::contact

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dae/contact_pairs.hpp"
+#include "contact/contact_pairs.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
 
-namespace hilda::dae {
+namespace hilda::contact {
 
 namespace {
 
 /// Whether the value of a key denotes several bodies
-bool is_group(ObjectReader& o, std::string_view key, const BodyFinder& bodies)
+bool is_group(dae::ObjectReader& o, std::string_view key, const dae::BodyFinder& bodies)
 {
-    const Json* v = o.find(key);
+    const io::Json* v = o.find(key);
     if (v == nullptr) return false;
     return v->list() != nullptr || (v->string() != nullptr && *v->string() == "all" && !bodies.named("all"));
 }
 
-std::vector<int> read_group(ObjectReader& o, std::string_view key, const BodyFinder& bodies, int count)
+std::vector<int> read_group(dae::ObjectReader& o, std::string_view key, const dae::BodyFinder& bodies,
+                            int count)
 {
     std::vector<int> numbers;
     if (o.find(key)->list() == nullptr) {
@@ -25,18 +26,18 @@ std::vector<int> read_group(ObjectReader& o, std::string_view key, const BodyFin
         std::iota(numbers.begin(), numbers.end(), 0);
         return numbers;
     }
-    const Json::List& list = o.list(key, true);
+    const io::Json::List& list = o.list(key, true);
     if (list.empty()) o.fail(key, std::string(key) + " must not be an empty list");
     for (std::size_t k = 0; k < list.size(); ++k) {
         numbers.push_back(bodies.body_of_list(o, key, k));
         if (std::find(numbers.begin(), numbers.end() - 1, numbers.back()) != numbers.end() - 1)
-            o.fail(key, k, std::string(key) + " lists a body twice, got " + described(list[k]));
+            o.fail(key, k, std::string(key) + " lists a body twice, got " + dae::described(list[k]));
     }
     return numbers;
 }
 
 /// Each of `first` with each of `second`, without pairs of a body with itself and repeated pairs
-std::vector<std::pair<int, int>> pairs_of(ObjectReader& o, std::string_view key,
+std::vector<std::pair<int, int>> pairs_of(dae::ObjectReader& o, std::string_view key,
                                           const std::vector<int>& first, const std::vector<int>& second)
 {
     std::vector<std::pair<int, int>> pairs;
@@ -69,7 +70,7 @@ constexpr const char* conditions =
 
 }  // namespace
 
-void define_contact(ObjectReader& o)
+void define_contact(dae::ObjectReader& o)
 {
     o.defines("contact", "Contact",
               "Contact between a surface of body i and a surface of body j: a normal force and, "
@@ -80,7 +81,7 @@ void define_contact(ObjectReader& o)
               conditions);
 }
 
-ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int count)
+ContactPairs read_contact_pairs(dae::ObjectReader& o, const dae::BodyFinder& bodies, int count)
 {
     constexpr const char* one_or_more =
         R"("anyOf": [{"$ref": "#/$defs/reference"}, {"$ref": "#/$defs/references"}])";
@@ -105,7 +106,7 @@ ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int c
                         "for two different surfaces");
         if (!is_group(o, "bodies", bodies))
             o.fail("bodies",
-                   "bodies must be a list of bodies or \"all\", got " + described(*o.find("bodies")));
+                   "bodies must be a list of bodies or \"all\", got " + dae::described(*o.find("bodies")));
         const std::vector<int> group = read_group(o, "bodies", bodies, count);
         all = {.pairs = pairs_of(o, "bodies", group, group),
                .is_group = true,
@@ -131,4 +132,4 @@ ContactPairs read_contact_pairs(ObjectReader& o, const BodyFinder& bodies, int c
     return all;
 }
 
-}  // namespace hilda::dae
+}  // namespace hilda::contact

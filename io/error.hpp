@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace hilda::io {
@@ -28,13 +29,20 @@ public:
     using std::invalid_argument::invalid_argument;
 };
 
+/// The shortest decimal text that is read as the same number
+std::string shortest(double x);
+
 /// Throws InvalidInput "where: what, got value".
 template <class Value>
 [[noreturn]] void reject(const std::string& where, const std::string& what, const Value& value)
 {
     std::ostringstream text;
     text.precision(17);
-    text << where << ": " << what << ", got " << value;
+    text << where << ": " << what << ", got ";
+    if constexpr (std::is_floating_point_v<Value>)
+        text << shortest(value);
+    else
+        text << value;
     throw InvalidInput(text.str());
 }
 

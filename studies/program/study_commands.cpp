@@ -74,7 +74,8 @@ void restrict_help(CLI::App& command, const Study& to)
         return known == options.end() || known->is_of(to);
     };
     for (CLI::Option* option : command.get_options())
-        if (option->get_positional() || !is_of_study(option->get_name()) ||
+        if (option->get_name() == "KIND" || !is_of_study(option->get_name()) ||
+            (option->get_name() == "MODEL" && !is_of_study("--problem")) ||
             (option->get_name() == "--expect" && to.keys.empty()))
             command.remove_option(option);
     command.name("study " + to.name);

@@ -80,7 +80,8 @@ void write(const Study& study, const StudyContext& results, const StudyArguments
     }
     for (const std::string& figure : results.figures)
         run::remove_figure(output, figure);  // those of an earlier run
-    if (arguments.plot && arguments.draw &&
+    const bool all_failed = !results.numerical_failure.empty();
+    if (arguments.plot && arguments.draw && !all_failed &&
         !arguments.draw(study.name + ".py", output, arguments.figure_formats).empty())
         for (const std::string& figure : results.figures)
             for (const std::string& file : run::existing_figures(output, figure, arguments.figure_formats))

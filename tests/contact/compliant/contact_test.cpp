@@ -259,14 +259,13 @@ TEST_CASE("a normal force that is not finite ends the run with the name of the c
 TEST_CASE("a friction law rejects invalid parameters", "[contact][friction]")
 {
     const auto why = [](const FrictionParameters& p) { return refusal([&] { slide_roll_spin(p); }); };
-    CHECK(why({.mu_s = 0.2, .mu_k = 0.3, .K_E = 1}) ==
-          "friction: mu_s must not be below mu_k, got 0.20000000000000001");
+    CHECK(why({.mu_s = 0.2, .mu_k = 0.3, .K_E = 1}) == "friction: mu_s must not be below mu_k, got 0.2");
     CHECK(why({.mu_s = 0.2, .mu_k = -0.5, .K_E = 1}) == "friction: mu_k must not be negative, got -0.5");
     CHECK(why({.K_E = 0}) == "friction: K_E must be positive, got 0");
     CHECK(why({.K_E = 1, .eta_r = -1}) == "friction: eta_r must not be negative, got -1");
     CHECK(why({.K_E = 1, .eta_psi = -1}) == "friction: eta_psi must not be negative, got -1");
     CHECK(why({.K_E = 1, .eta_psi = 0.1, .E_star = 1e9}) ==
-          "friction: eta_psi and E_star exclude each other; E_star, got 1000000000");
+          "friction: eta_psi and E_star exclude each other; E_star, got 1e+09");
     CHECK(refusal([] { contact::friction_law("coulomb"); }) ==
           "contact::friction_law: the name must be one of the registered laws constant-torque, epsd, "
           "slide-roll-spin, got 'coulomb'");

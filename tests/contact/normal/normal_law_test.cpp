@@ -104,9 +104,9 @@ TEST_CASE("normal laws reject invalid parameters", "[contact][normal]")
     CHECK(refusal([] { Hertz(1e9, -0.5); }) ==
           "contact::damping_ratio: the coefficient of restitution must be in [0, 1], got -0.5");
     CHECK(refusal([] { Hertz(-1e9); }) ==
-          "contact::Hertz: the effective modulus must be positive, got -1000000000");
+          "contact::Hertz: the effective modulus must be positive, got -1e+09");
     CHECK(refusal([] { effective_modulus(2e11, 0.6, 2e11, 0.3); }) ==
-          "contact::effective_modulus: Poisson's ratio must be in (-1, 0.5], got 0.59999999999999998");
+          "contact::effective_modulus: Poisson's ratio must be in (-1, 0.5], got 0.6");
     CHECK(refusal([] { effective_modulus(std::nan(""), 0.3, 2e11, 0.3); }) ==
           "contact::effective_modulus: Young's modulus must be positive, got nan");
 }

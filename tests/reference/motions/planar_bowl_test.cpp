@@ -300,7 +300,7 @@ TEST_CASE("invalid parameters of a bowl are rejected with the value", "[referenc
     CHECK_THROWS_WITH((BallInBowl{.R = 1.0}.slide({}, {1})),
                       Contains("radius of curvature") && Contains("got 1"));
     CHECK_THROWS_WITH((PlanarBowl{.R = 1.4}.slide({}, {1})),
-                      Contains("radius of curvature") && Contains("got 1.3"));
+                      Contains("radius of curvature") && Contains("got 1.4"));
     CHECK_THROWS_WITH(bowl.slide({.p = Vec3(0, 0, -1)}, {1}), Contains("on the bowl"));
     CHECK_THROWS_WITH(bowl.slide({.rdot = Vec3(0, 1, 1)}, {1}), Contains("along the normal"));
     CHECK_THROWS_WITH(bowl.slide({}, {1, 0.5}), Contains("ascend"));

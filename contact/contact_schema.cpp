@@ -16,7 +16,7 @@ namespace {
 /// A definition that selects one of several definitions by a key of the object
 struct Group {
     std::string name;         ///< of the definition: "surface"
-    dae::TypeKind kind;       ///< its key is the one that selects
+    io::TypeKind kind;        ///< its key is the one that selects
     std::string description;  ///< of the definition
     io::Json key;             ///< schema of the key that selects
     std::string prefix = {};  ///< of the names of the definitions of the types

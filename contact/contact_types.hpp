@@ -3,13 +3,13 @@
 
 #pragma once
 
-#include "dae/type_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 namespace hilda::contact {
 
-inline const dae::TypeKind surface_kind = {"Surface", "type", "Type of the surface."};
-inline const dae::TypeKind normal_kind = {"Normal law", "type", "Type of the normal law."};
-inline const dae::TypeKind friction_kind = {"Friction law", "law", "Name of the friction law."};
+inline const io::TypeKind surface_kind = {"Surface", "type", "Type of the surface."};
+inline const io::TypeKind normal_kind = {"Normal law", "type", "Type of the normal law."};
+inline const io::TypeKind friction_kind = {"Friction law", "law", "Name of the friction law."};
 
 /// Adds the selection among the registered surfaces and laws to the definitions of the schema.
 void add_contacts(io::Json& definitions);

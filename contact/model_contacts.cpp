@@ -23,6 +23,7 @@
 #include "contact/evolving/friction.hpp"
 #include "contact/surface_types.hpp"
 #include "dae/model.hpp"
+#include "dae/model_schema.hpp"
 #include "dae/model_types.hpp"
 #include "io/schema/schema_recorder.hpp"
 #include "lie/settings.hpp"
@@ -37,19 +38,19 @@ const io::About about_friction = {"Friction law. Without it the contact is frict
                                   R"({"mu_s": 0.5, "mu_k": 0.4, "K_E": 10000})"};
 constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
 
-const dae::TypeSchema rolling_schema = {
+const io::TypeSchema rolling_schema = {
     .description =
         "Ideal rolling: the material points in contact have equal velocities. This is a nonholonomic "
         "constraint without a Coulomb bound. It requires the normal law constraint without a fallback.",
     .examples = {}};
 
-const dae::TypeSchema implicit_schema = {
+const io::TypeSchema implicit_schema = {
     .description =
         "Springs and dampers of sliding and rolling that are solved together with the step, so that no "
         "stiffness limits the step size. It requires the normal law constraint without a fallback.",
     .examples = {}};
 
-const dae::TypeSchema constraint_schema = {
+const io::TypeSchema constraint_schema = {
     .description =
         "The contact is a constraint whose algebraic unknowns are the contact points (Fang 2022, Ch. 5). "
         "There is no overlap and no stiffness. The normal force is the Lagrange multiplier. Both surfaces "
@@ -72,7 +73,7 @@ std::vector<std::string> normal_laws(bool elastic)
 std::shared_ptr<const NormalLaw> read_normal(ObjectReader& o, const std::string& type)
 {
     const NormalLawType& law = *io::Registry<NormalLawType>::find(type);
-    dae::defines_type(o, normal_kind, law.name, law.name, law.schema);
+    io::defines_type(o, normal_kind, law.name, law.name, law.schema);
     return law.read(o);
 }
 
@@ -148,7 +149,7 @@ std::shared_ptr<const FrictionModel> read_law(ObjectReader& o, const std::string
                                               const NormalLaw& normal)
 {
     const FrictionLaw& entry = friction_law(law);
-    dae::defines_type(o, friction_kind, entry.name, entry.name, entry.schema);
+    io::defines_type(o, friction_kind, entry.name, entry.name, entry.schema);
     return read_keys(o, entry, normal);
 }
 
@@ -157,11 +158,11 @@ void record_laws(io::SchemaRecorder& recorder)
 {
     record_surfaces(recorder);
     for (const NormalLawType& law : io::Registry<NormalLawType>::all())
-        dae::record_examples(recorder, normal_kind, law.name, law.name, law.schema,
-                             [&](ObjectReader& o) { law.read(o); });
+        io::record_examples<dae::ObjectReader>(recorder, normal_kind, law.name, law.name, law.schema,
+                                               [&](ObjectReader& o) { law.read(o); });
     for (const FrictionLaw& law : io::Registry<FrictionLaw>::all())
-        dae::record_examples(recorder, friction_kind, law.name, law.name, law.schema,
-                             [&](ObjectReader& o) { read_keys(o, law, GivenForce(0)); });
+        io::record_examples<dae::ObjectReader>(recorder, friction_kind, law.name, law.name, law.schema,
+                                               [&](ObjectReader& o) { read_keys(o, law, GivenForce(0)); });
     // A law that is not registered has these keys, and others.
     io::JsonSource source(R"({"mu_s": 0.5, "K_E": 1e4})", "friction parameters");
     source.schema = &recorder;
@@ -195,7 +196,7 @@ struct ConstraintNormal {
 
 ConstraintNormal read_constraint_normal(ObjectReader& o, const ContactPair& pair)
 {
-    dae::defines_type(o, normal_kind, "constraint", "constraint", constraint_schema);
+    io::defines_type(o, normal_kind, "constraint", "constraint", constraint_schema);
     ConstraintNormal settings;
     Unilateral& unilateral = settings.unilateral;
     unilateral.enabled = o.flag(
@@ -264,7 +265,7 @@ struct ConstraintFriction {
 
 ImplicitFriction read_implicit(ObjectReader& o)
 {
-    dae::defines_type(o, friction_kind, implicit, implicit, implicit_schema);
+    io::defines_type(o, friction_kind, implicit, implicit, implicit_schema);
     ImplicitFriction f;
     read_coefficients(o, f.mu_s, f.mu_k);
     f.K_E = o.positive("K_E", {"Tangential stiffness of sliding friction [N/m].", "1e6"});
@@ -294,7 +295,7 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
     if (law == implicit)
         settings.within_step = read_implicit(o);
     else if (settings.ideal_rolling)
-        dae::defines_type(o, friction_kind, rolling, rolling, rolling_schema);
+        io::defines_type(o, friction_kind, rolling, rolling, rolling_schema);
     else
         // A constraint has no elastic modulus for "spin": "hertz". The fallback uses the same law.
         settings.law = read_law(o, law, GivenForce(0));

@@ -68,16 +68,16 @@ std::string definition_of(const SurfaceType& type)
 void record_surfaces(io::SchemaRecorder& recorder)
 {
     for (const SurfaceType& type : io::Registry<SurfaceType>::all())
-        dae::record_examples(recorder, surface_kind, definition_of(type), type.name, type.schema,
-                             [&](dae::ObjectReader& o) {
-                                 try {
-                                     type.read(o);
-                                 } catch (const lie::InvalidInput&) {
-                                     if (!type.format_only) throw;
-                                 }
-                                 Shape shape;
-                                 read_pose(o, type.z, shape);
-                             });
+        io::record_examples<dae::ObjectReader>(recorder, surface_kind, definition_of(type), type.name,
+                                               type.schema, [&](dae::ObjectReader& o) {
+                                                   try {
+                                                       type.read(o);
+                                                   } catch (const lie::InvalidInput&) {
+                                                       if (!type.format_only) throw;
+                                                   }
+                                                   Shape shape;
+                                                   read_pose(o, type.z, shape);
+                                               });
     // A surface of a type that is not registered has the keys of the pose, and others.
     io::JsonSource source("{}", "pose");
     source.schema = &recorder;
@@ -111,7 +111,7 @@ Shape read_shape(dae::ObjectReader& parent, std::string_view key, const io::Abou
     dae::ObjectReader o = parent.object(key, about, "surface");
     using Types = io::Registry<SurfaceType>;
     const SurfaceType& type = *Types::find(o.one_of("type", Types::names()));
-    dae::defines_type(o, surface_kind, definition_of(type), type.name, type.schema);
+    io::defines_type(o, surface_kind, definition_of(type), type.name, type.schema);
     Shape shape;
     shape.surface = type.read(o);
     read_pose(o, type.z, shape);

@@ -5,15 +5,15 @@
 
 #include "contact/shape.hpp"
 #include "dae/object_reader.hpp"
-#include "dae/type_schema.hpp"
 #include "io/registry.hpp"
+#include "io/schema/type_schema.hpp"
 
 namespace hilda::contact {
 
 /// A surface type. The file of the surface registers it by io::Registry<SurfaceType>::add().
 struct SurfaceType {
     std::string name;
-    dae::TypeSchema schema = {};
+    io::TypeSchema schema = {};
     /// Reads the keys of this type, lengths in m. Throws dae::PlacedError.
     std::shared_ptr<const Surface> (*read)(dae::ObjectReader& o);
     /// Key for the direction of the z axis of the surface frame, such as "normal" or "axis". Empty if there

@@ -312,8 +312,8 @@ private:
                 io::Registry<Type>::find(meant) != nullptr)
                 o.fail("type", "unknown type " + described(*v) + "; did you mean '" + meant + "'?");
         const Type& type = *io::Registry<Type>::find(o.one_of("type", io::Registry<Type>::names()));
-        defines_type(o, {title, "type", "Type of the " + lower_case(title) + '.'}, type.name, type.name,
-                     type.schema);
+        io::defines_type(o, {title, "type", "Type of the " + lower_case(title) + '.'}, type.name, type.name,
+                         type.schema);
         return {unique_name(o, type.name, used_names), &type};
     }
 

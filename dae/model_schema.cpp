@@ -6,7 +6,7 @@
 #include "dae/model_file.hpp"
 #include "dae/model_types.hpp"
 #include "dae/outputs/output.hpp"
-#include "io/schema/schema_recorder.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <set>
 
@@ -111,7 +111,7 @@ const std::vector<std::string> models = {
 /// A model with the example of a type in this list, and with the bodies that the example names
 std::string model_with(const std::string& list, const std::string& type, const std::string& example)
 {
-    const Json entry = io::parsed_schema(example_text("type", type, example), "example of " + type);
+    const Json entry = io::parsed_schema(io::example_text("type", type, example), "example of " + type);
     std::set<std::string> names = {"body"};
     for (const Json::Member& m : *entry.members())
         if (const std::string* const name = m.value.string();
@@ -138,9 +138,7 @@ void record_types(io::SchemaRecorder& recorder, const std::string& list)
         Json& examples = recorder.definition(type.name)->examples;
         examples = Json::array();
         for (const std::string& example : type.schema.examples)
-            examples.push_back(io::parsed_schema(
-                "{\"type\": " + io::in_quotes(type.name) + (example.empty() ? "" : ", ") + example + '}',
-                type.name));
+            examples.push_back(io::parsed_schema(io::example_text("type", type.name, example), type.name));
     }
 }
 
@@ -148,14 +146,7 @@ template <class Type>
 void add_group(Json& definitions, const std::string& kind, const std::string& title,
                const std::string& description)
 {
-    Json references = Json::array();
-    for (const Type& type : io::Registry<Type>::all())
-        references.push_back({{"$ref", "#/$defs/" + type.name}});
-    definitions["any_" + kind] = {{"title", title},
-                                  {"description", description},
-                                  {"type", "object"},
-                                  {"required", Json::List{"type"}},
-                                  {"oneOf", references}};
+    io::add_choice(definitions, "any_" + kind, title, description, io::Registry<Type>::names());
 }
 
 /// Allows an expression in a string wherever a number is allowed.

@@ -9,9 +9,9 @@
 
 #include "dae/block.hpp"
 #include "dae/object_reader.hpp"
-#include "dae/type_schema.hpp"
 #include "io/expression.hpp"
 #include "io/registry.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <array>
 #include <set>
@@ -20,6 +20,8 @@
 #include <variant>
 
 namespace hilda::dae {
+
+using io::TypeSchema;
 
 class Driver;
 class Force;

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "contact/friction/tracker.hpp"
-#include "dae/type_schema.hpp"
 #include "io/registry.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <limits>
 #include <string>
@@ -140,7 +140,7 @@ struct FrictionParameters {
 /// A friction law. The file of the law registers it by io::Registry<FrictionLaw>::add().
 struct FrictionLaw {
     std::string name, what;  ///< name in model files, one-line description
-    dae::TypeSchema schema = {};
+    io::TypeSchema schema = {};
     std::shared_ptr<const FrictionModel> (*make)(const FrictionParameters&) = nullptr;
     /// Reads the keys of this law alone and creates it; p contains the common keys. nullptr: the law has no
     /// keys of its own and is created by `make`. Throws dae::PlacedError.

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "contact/detection/detector.hpp"
-#include "dae/type_schema.hpp"
 #include "io/registry.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <memory>
 #include <optional>
@@ -44,7 +44,7 @@ public:
 /// A normal law of model files. The file of the law registers it by io::Registry<NormalLawType>::add().
 struct NormalLawType {
     std::string name;  ///< value of the key "type"
-    dae::TypeSchema schema;
+    io::TypeSchema schema;
     /// Reads the keys of the law. Throws dae::PlacedError.
     std::shared_ptr<const NormalLaw> (*read)(dae::ObjectReader& o);
     bool elastic = true;  ///< has a stiffness, so that it can be the fallback of a constraint

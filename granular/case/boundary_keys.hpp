@@ -7,7 +7,7 @@
 #include "granular/core/surfaces/triangle_mesh.hpp"
 #include "granular/mesh/solid_body.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/type_schema.hpp"
+#include "io/schema/keyed_schema.hpp"
 
 #include <optional>
 
@@ -34,7 +34,7 @@ struct NamedBoundary {
 /// A type of boundary. A file registers it by io::Registry<BoundaryType>::add.
 struct BoundaryType {
     std::string name;  ///< value of the key "type"
-    io::TypeSchema schema;
+    io::KeyedSchema schema;
     /// Reads the keys of the type, besides type, name, material, r and v. `boundary` holds these. Returns one
     /// boundary, or several with other names. Throws io::PlacedError.
     std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);

@@ -71,7 +71,7 @@ public:
     }
 
     const Material i, j;
-    io::TypeSchema schema;
+    io::KeyedSchema schema;
     io::Json of_pair = io::Json::array();  ///< required keys of the entry of `laws`
     /// Whether the normal law can replace the keys of this law, which are then not allowed
     bool of_material = false;

@@ -5,7 +5,7 @@
 
 #include "granular/backend/split_mix.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/type_schema.hpp"
+#include "io/schema/keyed_schema.hpp"
 
 #include <vector>
 
@@ -54,7 +54,7 @@ private:
 /// A type of size distribution. A file registers it by io::Registry<SizeType>::add.
 struct SizeType {
     std::string name;  ///< value of the key "type"
-    io::TypeSchema schema;
+    io::KeyedSchema schema;
     /// Reads the keys besides type and by. Throws io::InvalidInput.
     std::vector<Sizes::Piece> (*read)(ObjectReader& o) = nullptr;
 };

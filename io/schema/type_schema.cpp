@@ -1,43 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/schema/type_schema.hpp"
 
-#include "io/schema/schema_recorder.hpp"
-
 namespace hilda::io {
 
-namespace {
-
-/// The object with these members
-Json object(const std::string& members, const std::string& name)
+std::string example_text(const std::string& key, const std::string& name, const std::string& example)
 {
-    return parsed_schema("{" + members + "}", name);
+    return '{' + in_quotes(key) + ": " + in_quotes(name) + (example.empty() ? "" : ", ") + example + '}';
 }
 
-}  // namespace
-
-Json definition(const TypeKind& kind, const std::string& name, const TypeSchema& schema)
+void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& definition,
+                  const std::string& name, const TypeSchema& schema)
 {
-    const std::string place = "schema of " + name;
-    Json parts = Json::array(), required = Json::array(), properties = Json::object();
-    for (const std::string& part : schema.parts) parts.push_back({{"$ref", "#/$defs/" + part}});
-    properties[kind.key] = {{"description", kind.what}, {"const", name}};
-    for (const KeySchema& key : schema.keys) {
-        properties[key.name] = Json::object();
-        if (!key.description.empty()) properties[key.name]["description"] = key.description;
-        properties[key.name].update(object(key.rest, place + ", key " + key.name));
-        if (key.required) required.push_back(key.name);
-    }
-    Json all = {{"title", kind.title + " " + name}, {"description", schema.description}};
-    if (parts.size() > 0) all["allOf"] = parts;
-    if (required.size() > 0) all["required"] = required;
-    all["properties"] = properties;
-    all.update(object(schema.rest, place));
-    all["unevaluatedProperties"] = false;
-    Json example = {{kind.key, name}};
-    example.update(object(schema.example, place + ", example"));
-    all["examples"] = Json::array();
-    all["examples"].push_back(example);
-    return all;
+    if (!o.records_schema()) return;
+    o.defines(definition, kind.title + ' ' + name, schema.description, schema.rest);
+    o.note(kind.key, R"("const": )" + in_quotes(name), {kind.what});
+}
+
+void add_choice(Json& definitions, const std::string& name, const std::string& title,
+                const std::string& description, const std::vector<std::string>& types)
+{
+    Json references = Json::array();
+    for (const std::string& type : types) references.push_back({{"$ref", "#/$defs/" + type}});
+    definitions[name] = {{"title", title},
+                         {"description", description},
+                         {"type", "object"},
+                         {"required", Json::List{"type"}},
+                         {"oneOf", references}};
 }
 
 }  // namespace hilda::io

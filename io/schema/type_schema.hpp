@@ -1,61 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The part of the schema of cases that describes one type: a law, a boundary, a fill.
+/// What the schema of a file says about a type of objects besides the keys, which come from its reader.
 
 #pragma once
 
-#include "io/json.hpp"
-#include "io/registry.hpp"
+#include "io/schema/schema_recorder.hpp"
+
+#include <string>
+#include <vector>
 
 namespace hilda::io {
 
-/// A key of a type. definition() makes "NAME": {"description": DESCRIPTION, REST} of it.
-struct KeySchema {
-    std::string name, description;
-    std::string rest;       ///< further members of the JSON object: type, limits, default, examples
-    bool required = false;  ///< whether every object of the type has the key
-};
-
-/// The key "note" of types without a part that has it
-inline const KeySchema note_key = {"note", "", R"("$ref": "#/$defs/note")"};
-
-/// Schema of the objects of one type
+/// A type: a joint, a force, an output, a surface, a boundary, a law
 struct TypeSchema {
-    std::string description;  ///< complete sentences
-    /// Shared definitions of the schema, such as "boundary_keys"
-    std::vector<std::string> parts = {};
-    std::vector<KeySchema> keys = {};  ///< the keys besides those of `parts` and the key with the name
-    std::string example = {};          ///< members of a JSON object, without the key with the name
-    std::string rest = {};             ///< further members of the definition: conditions on several keys
+    std::string description;  ///< complete sentences; of a constraint, with the number of rows
+    /// Members of a JSON object, without the key with the name of the type. The schema has the keys that the
+    /// reader of the type reads of them.
+    std::vector<std::string> examples;
+    std::string rest = {};  ///< further members of the definition in JSON: conditions on several keys
 };
 
 /// What the types of one kind have in common in the schema
 struct TypeKind {
-    std::string title;  ///< "Boundary"
-    std::string key;    ///< with the name: "type"
-    std::string what;   ///< description of this key: "Type of the boundary."
+    std::string title;  ///< "Surface"
+    std::string key;    ///< with the name of the type: "type"
+    std::string what;   ///< description of this key: "Type of the surface."
 };
 
-/// The definition of one type. Throws PlacedError for a text of the schema that is not JSON.
-Json definition(const TypeKind& kind, const std::string& name, const TypeSchema& schema);
+/// {"KEY": "NAME", EXAMPLE}: the object of an example
+std::string example_text(const std::string& key, const std::string& name, const std::string& example);
 
-/// Defines the registered types, and `group` as one of them. `definition_of` makes the definition of a type.
-template <class Type, class F>
-void set_one_of(Json& definitions, const std::string& group, const F& definition_of)
+/// Notes for the schema that o is an object of this type, after the key with its name has been read.
+void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& definition,
+                  const std::string& name, const TypeSchema& schema);
+
+/// Reads the examples of a type for the schema: `read` is called with a Reader of each of them.
+template <class Reader, class Read>
+void record_examples(SchemaRecorder& recorder, const TypeKind& kind, const std::string& definition,
+                     const std::string& name, const TypeSchema& schema, const Read& read)
 {
-    Json references = Json::array();
-    for (const Type& type : Registry<Type>::all()) {
-        references.push_back({{"$ref", "#/$defs/" + type.name}});
-        definitions[type.name] = definition_of(type);
+    for (const std::string& example : schema.examples) {
+        const std::string text = example_text(kind.key, name, example);
+        JsonSource source(text, "example of " + name, text.size() + 1);
+        source.schema = &recorder;
+        Reader o(source, source.root, "");
+        o.find(kind.key);
+        defines_type(o, kind, definition, name, schema);
+        read(o);
+        o.finish();
+        recorder.definition(definition)->examples.push_back(source.root);
     }
-    definitions[group]["oneOf"] = references;
 }
 
-/// The same for types with a member `schema`
-template <class Type>
-void set_one_of(Json& definitions, const std::string& group, const TypeKind& kind)
-{
-    set_one_of<Type>(definitions, group,
-                     [&](const Type& type) { return definition(kind, type.name, type.schema); });
-}
+/// Adds the definition of objects of several types: one of the definitions with the names `types`.
+void add_choice(Json& definitions, const std::string& name, const std::string& title,
+                const std::string& description, const std::vector<std::string>& types);
 
 }  // namespace hilda::io

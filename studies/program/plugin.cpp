@@ -4,6 +4,7 @@
 #include "contact/friction/friction.hpp"
 #include "contact/normal/normal_law.hpp"
 #include "contact/surface_types.hpp"
+#include "dae/model_schema.hpp"
 #include "dae/model_types.hpp"
 #include "dae/outputs/output.hpp"
 #include "io/archive.hpp"
@@ -43,7 +44,7 @@ size_t entries()
 /// Number of the entries that a plug-in can add
 size_t registered_entries()
 {
-    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart,
+    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart, 
                    contact::SurfaceType, contact::NormalLawType, contact::FrictionLaw, Problem,
                    run::SinkType>() +
            studies().size();

@@ -7,7 +7,7 @@
 #include "granular/insertion/sizes.hpp"
 #include "granular/reading/clump_keys.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/type_schema.hpp"
+#include "io/schema/keyed_schema.hpp"
 
 #include <functional>
 
@@ -39,7 +39,7 @@ struct FillSpec {
 /// A type of fill. A file registers it by io::Registry<FillType>::add.
 struct FillType {
     std::string name;  ///< value of the key "type"
-    io::TypeSchema schema;
+    io::KeyedSchema schema;
     /// Reads the keys besides type, material and replica. `radius`: default of the radius [m]. Throws
     /// io::InvalidInput.
     FillSpec (*read)(ObjectReader& o, const std::optional<double>& radius);

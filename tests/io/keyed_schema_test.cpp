@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/schema/type_schema.hpp"
+#include "io/schema/keyed_schema.hpp"
 
 #include "io/json_source.hpp"
 #include "io/schema/schema_recorder.hpp"
@@ -11,7 +11,7 @@ using namespace hilda;
 TEST_CASE("the schema of a type has its name, keys, parts, conditions and example", "[io][schema]")
 {
     const io::TypeKind kind = {"Spring", "type", "Type of the spring."};
-    const io::TypeSchema schema = {
+    const io::KeyedSchema schema = {
         .description = "A spring.",
         .parts = {"points", "pair"},
         .keys = {{"k", "Stiffness [N/m].", R"("type": "number", "minimum": 0)", true},

@@ -5,7 +5,7 @@
 # In the others a law is an index and 32 bytes; added laws have the last indices of their kind. A program with added laws compiles
 # these files and links the other objects of hilda-granular.
 set(granular_law_files core/contact_loop_cpu.cpp core/sweep_cpu.cpp core/add_contacts.cpp core/surfaces/triangle_contacts.cpp
-    world/double_world.cpp world/world_queries.cpp case/case_schema.cpp case/law_names.cpp case/pair_keys.cpp
+    world/double_world.cpp world/world_queries.cpp case/law_list.cpp case/pair_keys.cpp
     program/laws.cpp program/lammps_laws.cpp program/provenance.cpp)
 
 # An error in one line; FATAL_ERROR would wrap it.

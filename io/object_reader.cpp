@@ -413,10 +413,10 @@ void ObjectReader::refuse_other_kinds(std::string_view key) const
     static constexpr Kind kinds[] = {{"hilda_model", "a model", "hilda run"},
                                      {"hilda_case", "a case of grains", "hilda granular"},
                                      {"hilda_cosim", "a co-simulation", "hilda cosim"}};
-    if (has(key)) return;
+    if (peek(key) != nullptr) return;
     for (const Kind& other : kinds)
         for (const Kind& expected : kinds)
-            if (has(other.key) && expected.key == key)
+            if (peek(other.key) != nullptr && expected.key == key)
                 fail(other.key, "the file is " + std::string(other.what) + ", not " +
                                     std::string(expected.what) + "; use " + std::string(other.command));
 }

@@ -7,7 +7,7 @@
 #include "granular/core/surfaces/triangle_mesh.hpp"
 #include "granular/mesh/solid_body.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/keyed_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <optional>
 
@@ -34,7 +34,8 @@ struct NamedBoundary {
 /// A type of boundary. A file registers it by io::Registry<BoundaryType>::add.
 struct BoundaryType {
     std::string name;  ///< value of the key "type"
-    io::KeyedSchema schema;
+    io::TypeSchema schema;
+    std::string place;  ///< description of the key r
     /// Reads the keys of the type, besides type, name, material, r and v. `boundary` holds these. Returns one
     /// boundary, or several with other names. Throws io::PlacedError.
     std::vector<NamedBoundary> (*read)(ObjectReader& o, NamedBoundary boundary);
@@ -45,7 +46,7 @@ struct BoundaryType {
 void read_body(ObjectReader& o, NamedBoundary& body, const std::optional<SolidBody>& solid = {});
 /// Reads the density of a solid, which is of the density 1, if there is this key. Throws io::PlacedError if
 /// there is a mass as well.
-std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid);
+std::optional<SolidBody> read_density(ObjectReader& o, const SolidBody& solid, const io::About& about);
 
 /// Displaces the place of a boundary, of numbers or formulas, by d [m].
 void displace(NamedBoundary& b, const Vec3& d);
@@ -54,16 +55,17 @@ void displace(NamedBoundary& b, const Vec3& d);
 /// and reads its further keys. Returns the frustum, and its end faces if the particles are inside.
 std::vector<NamedBoundary> read_frustum(ObjectReader& o, NamedBoundary b, double radius,
                                         double second_radius);
-/// The keys of read_frustum(). `needs_length`: whether length is required
-std::vector<io::KeySchema> frustum_keys(bool needs_length);
+/// Description of the key r of a boundary of which it is this point (BoundaryType::place)
+std::string place_of(const std::string& point);
+/// What the schema says about keys of several types
+inline constexpr io::About
+    about_radius = {"Radius [m].", "0.05"},
+    about_inside = {"If true, the particles are inside of the surface; otherwise they are outside.", "true"},
+    about_open_sides = {"Sides that are left open; at least one side must remain.", R"(["+z"])",
+                        R"("maxItems": 5)"};
 
-/// The key r; `point` is what it is the position of
-io::KeySchema place_key(const std::string& point);
-/// The parts of the schema of a boundary that may have a mass (BoundaryType::schema)
-inline const std::vector<std::string> parts_of_body = {"boundary_keys", "body_keys"};
-
-/// Reads one entry of `boundaries`. Returns one boundary, or the sides of a box, which are planes with the
-/// names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
-std::vector<NamedBoundary> read_boundary(ObjectReader& o, const std::string& name);
+/// Reads one entry of `boundaries`, of this type. Returns one boundary, or the sides of a box, which are
+/// planes with the names NAME-x, NAME+x, NAME-y, ... Throws io::InvalidInput.
+std::vector<NamedBoundary> read_boundary(ObjectReader& o, const BoundaryType& type, const std::string& name);
 
 }  // namespace hilda::granular

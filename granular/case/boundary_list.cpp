@@ -7,13 +7,22 @@
 
 namespace hilda::granular {
 
-void BoundaryList::read(ObjectReader& o, int material)
+void BoundaryList::read(ObjectReader& o, const EntryKeys& keys)
 {
-    const std::string name = o.name("name", {}, "boundary " + std::to_string(bounds.size()));
+    const auto& type = io::read_type<BoundaryType>(o, {"Boundary", "type", "Type of the boundary."});
+    const std::string name =
+        o.name("name",
+               {.text = "Name of the boundary in the columns of run.csv. It must be unique, without commas, "
+                        "quotes and line ends. By default 'boundary' and its number, counted from 0.",
+                .example = R"("floor")",
+                .rest = R"("pattern": "^[^,\"]*$")",
+                .computed = true},
+               "boundary " + std::to_string(bounds.size()));
     if (name.find_first_of(",\"") != std::string::npos)
         o.fail("name", "name must not contain commas and quotes, because it is part of column names, got " +
                            io::described(name));
-    for (NamedBoundary& n : read_boundary(o, name)) {
+    const int material = keys.material(o);
+    for (NamedBoundary& n : read_boundary(o, type, name)) {
         if (find(n.name) != nullptr)
             o.fail("name", "two boundaries have the same name, got " + io::described(n.name));
         n.boundary.material = material;

@@ -16,7 +16,7 @@ public:
     explicit BoundaryList(Case& out) : out(out) {}
 
     /// Reads the boundaries of an entry.
-    void read(ObjectReader& o, int material);
+    void read(ObjectReader& o, const EntryKeys& keys);
     /// Adds all boundaries to the world of the case. Sets EntryKeys::free.
     void add(EntryKeys& keys);
     /// Evaluates the formulas of the boundaries for the first step, and registers them for all steps.

@@ -5,6 +5,7 @@
 #include "granular/case/continued_case.hpp"
 #include "granular/case/entry_keys.hpp"
 #include "granular/case/memory_estimate.hpp"
+#include "granular/case/option_keys.hpp"
 #include "granular/case/output_keys.hpp"
 #include "granular/case/pair_keys.hpp"
 #include "granular/case/particles/fill_list.hpp"
@@ -15,48 +16,12 @@
 #include "io/provenance.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 
 namespace hilda::granular {
 
 namespace {
-
-Scheme read_scheme(ObjectReader& o)
-{
-    const std::vector<std::string> names(std::begin(scheme_names), std::end(scheme_names));
-    const std::string name = o.one_of("integrator", names, {}, names[0]);
-    return static_cast<Scheme>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-Material read_material(ObjectReader o)
-{
-    Material material{
-        .name = o.name("name"), .density = o.positive("density"), .E = o.positive("E"), .nu = o.number("nu")};
-    if (!(material.nu > -1 && material.nu < 0.5))
-        o.fail("nu", "nu must be above -1 and below 0.5, got " + io::shortest(material.nu));
-    o.finish();
-    return material;
-}
-
-void read_domain(ObjectReader domain, WorldOptions& o)
-{
-    o.low = domain.vec3("low"), o.high = domain.vec3("high");
-    for (const auto& [low, high, axis] :
-         {std::tuple{o.low.x, o.high.x, 0u}, {o.low.y, o.high.y, 1u}, {o.low.z, o.high.z, 2u}})
-        if (!(low < high))
-            domain.fail("high", axis,
-                        "high must be above low, " + io::shortest(low) + ", got " + io::shortest(high));
-    o.periodic = domain.flags("periodic", o.periodic);
-    o.outflow = domain.sides("outflow");
-    for (std::size_t side = 0; side < o.outflow.size(); ++side)
-        if (o.outflow[side] && o.periodic[side / 2])
-            domain.fail("outflow", std::string("outflow must not list a side along a periodic axis, got \"") +
-                                       ObjectReader::side_names[side] + '"');
-    o.delete_lost = domain.one_of("lost", {"error", "delete"}, {}, "error") == "delete";
-    domain.finish();
-}
 
 class CaseReader {
 public:
@@ -67,22 +32,56 @@ public:
     void read()
     {
         ObjectReader o(out.source, out.source.root, "");
-        o.version("hilda_case");
-        o.allow_schema();
-        out.name = o.text("name", {}, "case");
-        options(o);
-        for (ObjectReader& s : o.objects("stages")) stage(s);
-        for (ObjectReader& m : o.objects("materials")) add_material(m);
+        read_options(o, out, world);
+        world.device = environment.device, world.removable = environment.removable;
+        for (ObjectReader& s :
+             o.objects("stages", "stage",
+                       {"Parts of the run, in their order: each changes entries of the case at its start, "
+                        "and ends at a time or when the particles are at rest. The run ends with the last "
+                        "one, at the latest at end.",
+                        R"([{"name": "settle", "duration": 0.5, "until": {"share": 1e-4}}, )"
+                        R"({"name": "shake", "set": {"/gravity": [1, 0, -9.81]}}])"}))
+            stage(s);
+        for (ObjectReader& m : o.objects("materials", "material",
+                                         {"Materials of particles and boundaries.",
+                                          R"([{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}])"},
+                                         true))
+            add_material(m);
         if (keys.materials.empty()) o.fail("materials", "a case must have at least one material, got none");
         out.world = std::make_unique<World>(world, keys.materials);
-        for (ObjectReader& l : o.objects("laws")) law(l);
-        for (ObjectReader& b : o.objects("boundaries")) boundaries.read(b, keys.material(b));
+        for (ObjectReader& l :
+             o.objects("laws", "law",
+                       {"Contact laws, one for each pair of materials that can touch.",
+                        R"([{"restitution": 0.7, "mu": 0.3, "tangential": {"law": "mindlin"}}])"}))
+            law(l);
+        for (ObjectReader& b : o.objects("boundaries", "boundary",
+                                         {"Boundaries of the particles.",
+                                          R"([{"name": "floor", "type": "plane", "normal": [0, 0, 1]}])"}))
+            boundaries.read(b, keys);
         boundaries.add(keys);
-        for (ObjectReader& c : o.objects("clumps")) clump(c);
-        for (ObjectReader& p : o.objects("particles"))
+        for (ObjectReader& c :
+             o.objects("clumps", "clump",
+                       {"Templates of clumps: spheres that move as one rigid body. Single clumps are entries "
+                        "of particles with the key clump; fills with this key consist of clumps.",
+                        R"([{"name": "pair", "spheres": [{"r": [5e-4, 0, 0], "radius": 1e-3}, )"
+                        R"({"r": [-5e-4, 0, 0], "radius": 1e-3}]}])"}))
+            clump(c);
+        for (ObjectReader& p : o.objects(
+                 "particles", "particle",
+                 {"Particles and clumps given one by one.", R"([{"r": [0, 0, 0.01], "radius": 0.001}])"}))
             largest = std::max(largest, read_particle(p, out, keys, world, environment.with_particles));
-        for (ObjectReader& f : o.objects("fill")) fills.read(f, out, keys, world);
-        for (ObjectReader& i : o.objects("insert")) insertion(i);
+        for (ObjectReader& f :
+             o.objects("fill", "fill",
+                       {"Sets of particles.",
+                        R"([{"type": "lattice", "low": [0, 0, 0], "high": [0.03, 0.02, 0.03], )"
+                        R"("radius": 0.001}])"}))
+            fills.read(f, out, keys, world);
+        for (ObjectReader& i :
+             o.objects("insert", "insertion",
+                       {"Particles that are inserted during the run.",
+                        R"([{"rate": 2000, "to": 0.5, "radius": 0.001, "v": [0, 0, -1], "region": )"
+                        R"({"type": "box", "low": [0, 0, 0.09], "high": [0.03, 0.02, 0.1]}}])"}))
+            insertion(i);
         check_groups();
         out.outputs = read_outputs(o, world);
         check_groups_of_fields();
@@ -109,32 +108,6 @@ public:
     }
 
 private:
-    void options(ObjectReader& o)
-    {
-        read_domain(o.object("domain"), world);
-        world.device = environment.device, world.removable = environment.removable;
-        world.gravity = o.vec3("gravity", Vec3{0, 0, -9.81});
-        out.h = world.h = o.positive("step");
-        out.end = o.positive("end");
-        if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)
-            o.fail("end", "end must be at most 9e15 steps, got " + io::shortest(out.end));
-        const Intervals intervals = read_intervals(o, out.h, out.end);
-        out.interval = intervals.rows;
-        out.frame_interval = intervals.frames;
-        if (o.has(key_without_effect)) {
-            o.positive(key_without_effect);
-            out.notices.push_back(out.source.place(std::string("/") + key_without_effect) + ": " +
-                                  key_without_effect +
-                                  " has no effect: a checkpoint can be written after every step");
-        }
-        world.skin = o.number("skin", {}, world.skin);
-        if (!(world.skin > 0 && world.skin <= 1))
-            o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
-        o.positive("skin", {}, world.skin);  // in single precision
-        world.scheme = read_scheme(o);
-        world.orientation = o.flag("orientation", {}, false);
-    }
-
     void stage(ObjectReader& o)
     {
         out.stage_specs.push_back(read_stage(o, out.h));
@@ -219,6 +192,12 @@ private:
 
     void clump(ObjectReader& o)
     {
+        o.defines("clump", "Clump",
+                  "A template of clumps: spheres, which may overlap, that move as one rigid body. Mass, "
+                  "centre of mass and inertia are those of a homogeneous body, the union of the spheres, or "
+                  "mass and inertia are given.",
+                  R"("if": {"required": ["mass"]}, "then": {"required": ["inertia"]}, )"
+                  R"("else": {"not": {"anyOf": [{"required": ["inertia"]}, {"required": ["centre"]}]}})");
         const int number = keys.material(o);
         const ClumpTemplate t =
             read_clump(o, *out.world, number, keys.materials[static_cast<std::size_t>(number)]);

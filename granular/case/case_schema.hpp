@@ -7,9 +7,8 @@
 
 namespace hilda::granular {
 
-/// The schema (JSON Schema, draft 2020-12) of the cases that this program reads: the committed file
-/// granular/case.schema.json, in which the definitions of laws, boundaries and fills are those of the
-/// program.
+/// The schema (JSON Schema, draft 2020-12) of the cases that this program reads. It is recorded from the
+/// readers, which read examples of all registered types and of all laws.
 io::Json case_schema();
 
 }  // namespace hilda::granular

@@ -32,11 +32,21 @@ void set(io::JsonSource& source, const Entry& e) { source.set('/' + e.key + '=' 
 
 Intervals read_intervals(ObjectReader& o, double h, double end)
 {
-    const double interval = o.positive("interval", {}, end / 1000);
+    const double interval =
+        o.positive("interval",
+                   {.text = "Time between rows of run.csv [s], rounded to whole steps. By default end/1000.",
+                    .example = "0.002",
+                    .computed = true},
+                   end / 1000);
     // a whole number of rows, which are a whole number of steps apart
     const double row = h * std::max(1., std::round(interval / h)),
                  long_interval = row * std::max(1., std::round(end / 100 / row));
-    return {interval, o.positive("frame_interval", {}, long_interval)};
+    return {interval, o.positive("frame_interval",
+                                 {.text = "Time between frames for ParaView [s], rounded to whole steps. By "
+                                          "default end/100, rounded to whole rows.",
+                                  .example = "0.01",
+                                  .computed = true},
+                                 long_interval)};
 }
 
 double end_of(const io::JsonSource& source) { return ObjectReader(source, source.root, "").positive("end"); }

@@ -8,10 +8,11 @@
 
 namespace hilda::granular {
 
-int EntryKeys::material(ObjectReader& o) const
+int EntryKeys::material(ObjectReader& o, const std::string& more) const
 {
-    const std::string name =
-        o.text("material", {}, materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
+    const std::string about = "Name of a material. It may be omitted if there is only one material." + more;
+    const std::string name = o.text("material", {.text = about, .example = R"("glass")", .computed = true},
+                                    materials.size() == 1 ? std::optional(materials[0].name) : std::nullopt);
     return material_named(name, materials, [&](const std::string& what) { o.fail("material", what); });
 }
 
@@ -27,8 +28,10 @@ void EntryKeys::check_group_name(const ObjectReader& o, const char* key, const s
 
 int EntryKeys::group(ObjectReader& o)
 {
-    if (!o.has("group")) return Groups::none;
-    const std::string name = o.text("group");
+    if (!o.given("group")) return Groups::none;
+    const std::string name = o.text("group", {"Name of the group of these particles, for groups.csv, the "
+                                              "column group of tables and frames, and remove of stages.",
+                                              R"("lid")", R"("minLength": 1, "pattern": "^[^,\"]*$")"});
     check_group_name(o, "group", name);
     return groups.number(name);
 }
@@ -36,7 +39,12 @@ int EntryKeys::group(ObjectReader& o)
 std::uint16_t EntryKeys::replica(ObjectReader& o) const
 {
     constexpr long most = 0xffff;
-    const long number = o.count("replica", {}, 0);
+    const long number = o.count("replica",
+                                {"Number of the replica. Replicas are independent systems in one run: "
+                                 "particles of different replicas do not interact, and all replicas share "
+                                 "the same boundaries. It must be 0 if a boundary has a mass.",
+                                 "1", R"("maximum": 65535)"},
+                                0);
     if (number > most) o.fail("replica", "replica must be at most 65535, got " + std::to_string(number));
     if (number > 0 && !free.empty())
         o.fail("replica", "replica must be 0 if a boundary has a mass, as " + free + " has, got " +
@@ -46,6 +54,11 @@ std::uint16_t EntryKeys::replica(ObjectReader& o) const
 
 int EntryKeys::attached_to(ObjectReader& o, const Case& c)
 {
+    o.note(
+        "attached_to", "text",
+        {"Name of a boundary without a mass. The particles move rigidly with it from the start on, whatever "
+         "their contacts: a rough wall, base or drum. Their loads are included in those of the boundary.",
+         R"("drum")"});
     if (!o.has("attached_to")) return -1;
     const std::string name = o.one_of("attached_to", c.boundaries);
     const auto at = std::find(c.boundaries.begin(), c.boundaries.end(), name);

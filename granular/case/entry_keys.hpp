@@ -18,8 +18,9 @@ struct EntryKeys {
     std::string free;        ///< pointer of the first boundary with a mass; empty if there is none
     bool has_fixed = false;  ///< whether a particle is fixed by its entry
 
-    /// The number of the material of an entry. A single material is the default.
-    int material(ObjectReader& o) const;
+    /// The number of the material of an entry. A single material is the default. `more`: a further sentence
+    /// of the description
+    int material(ObjectReader& o, const std::string& more = "") const;
     /// Fails at the key if the name cannot be that of a group.
     static void check_group_name(const ObjectReader& o, const char* key, const std::string& name);
     /// The number of the group of an entry, or Groups::none

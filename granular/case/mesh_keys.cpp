@@ -11,8 +11,14 @@ namespace hilda::granular {
 namespace {
 
 /// A list of at least `least` points, each of two numbers
-std::vector<std::array<double, 2>> points(ObjectReader& o, std::string_view key, std::size_t least)
+std::vector<std::array<double, 2>> points(ObjectReader& o, std::string_view key, std::size_t least,
+                                          const io::About& about)
 {
+    o.note(key,
+           R"("type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, )"
+           R"("maxItems": 2}, "minItems": )" +
+               std::to_string(least),
+           about);
     std::vector<std::array<double, 2>> all;
     io::Json::List recorded;
     const std::string at = o.pointer(key);
@@ -32,51 +38,83 @@ std::vector<std::array<double, 2>> points(ObjectReader& o, std::string_view key,
 }
 
 /// An integer of at most 31 bits
-int number(ObjectReader& o, std::string_view key, long fallback)
+int number(ObjectReader& o, std::string_view key, const io::About& about, long fallback)
 {
-    const long n = o.count(key, {}, fallback);
+    const long n = o.count(key, about, fallback);
     if (n > std::numeric_limits<int>::max())
         o.fail(key, std::string(key) + " must be at most 2147483647, got " + std::to_string(n));
     return static_cast<int>(n);
 }
 
+constexpr io::About about_edge = {
+    "Longest edge of the cells into which each side is divided [m]; 0: one cell.", "0.01"};
+
 TriangleMesh read_box_mesh(ObjectReader& o)
 {
-    const Vec3 low = o.vec3("low"), high = o.vec3("high");
-    const std::array<bool, 6> open = o.sides("open");
-    const bool inside = o.flag("inside", {}, true);
-    return box_mesh(low, high, open, inside, o.not_negative("edge", {}, 0));
+    const Vec3 low = o.vec3("low", {"Lower corner [m], in the frame of the mesh.", "[0, 0, 0]"});
+    const Vec3 high = o.vec3("high", {"Upper corner [m], in the frame of the mesh.", "[0.1, 0.1, 0.2]"});
+    const std::array<bool, 6> open = o.sides("open", about_open_sides);
+    const bool inside =
+        o.flag("inside",
+               {"If true, the particles are inside of the box; otherwise they are outside.", "false"}, true);
+    return box_mesh(low, high, open, inside, o.not_negative("edge", about_edge, 0));
 }
 TriangleMesh read_lathe(ObjectReader& o)
 {
-    const auto profile = points(o, "profile", 2);
-    return lathe_mesh(profile, number(o, "segments", 48));
+    const auto profile = points(
+        o, "profile", 2,
+        {"Points [radius, z] [m], in the frame of the mesh. The particles are on the left of the profile, "
+         "seen with the radius to the right and z up: a profile that leads upwards has the particles inside.",
+         "[[0.01, 0], [0.05, 0.06], [0.05, 0.2]]"});
+    const io::About about = {"Number of divisions of the circle [-].", "32", R"("minimum": 3)"};
+    return lathe_mesh(profile, number(o, "segments", about, 48));
 }
 TriangleMesh read_extrusion(ObjectReader& o)
 {
-    const auto outline = points(o, "outline", 3);
-    return extrude_mesh(outline, o.positive("length"));
+    const auto outline = points(
+        o, "outline", 3,
+        {"Counterclockwise points [x, y] [m], in the frame of the mesh.", "[[0, 0], [0.01, 0], [0, 0.02]]"});
+    return extrude_mesh(outline, o.positive("length", {"Length along z [m].", "0.05"}));
 }
 TriangleMesh read_plate(ObjectReader& o)
 {
-    const double x = o.positive("width_x"), y = o.positive("width_y");
-    return plate_mesh(x, y, o.not_negative("edge", {}, 0));
+    const double x = o.positive("width_x", {"Width along x [m].", "0.1"}),
+                 y = o.positive("width_y", {"Width along y [m].", "0.1"});
+    return plate_mesh(x, y, o.not_negative("edge", about_edge, 0));
 }
 TriangleMesh read_sphere_mesh(ObjectReader& o)
 {
-    const double radius = o.positive("radius");
-    return sphere_mesh(radius, number(o, "divisions", 3));
+    const double radius = o.positive("radius", {"Radius of the vertices [m].", "0.01"});
+    const io::About about = {"Number of divisions of the 20 triangles of an icosahedron into four [-].", "2",
+                             R"("maximum": 8)"};
+    return sphere_mesh(radius, number(o, "divisions", about, 3));
 }
 
 struct Source {
     const char* key;
     TriangleMesh (*read)(ObjectReader& o);
+    io::About about;
 };
-constexpr std::array<Source, 5> shapes = {{{"box", read_box_mesh},
-                                           {"lathe", read_lathe},
-                                           {"extrude", read_extrusion},
-                                           {"plate", read_plate},
-                                           {"sphere", read_sphere_mesh}}};
+constexpr std::array<Source, 5> shapes = {
+    {{"box",
+      read_box_mesh,
+      {"The sides of a box.", R"({"low": [0, 0, 0], "high": [0.1, 0.1, 0.2], "open": ["+z"]})"}},
+     {"lathe",
+      read_lathe,
+      {"A surface of revolution about the z axis of the mesh.",
+       R"({"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]], "segments": 32})"}},
+     {"extrude",
+      read_extrusion,
+      {"A prism along the z axis of the mesh, from z = 0; the particles are outside.",
+       R"({"outline": [[0, 0], [0.01, 0], [0, 0.02]], "length": 0.05})"}},
+     {"plate",
+      read_plate,
+      {"A rectangle about the origin of the mesh with the normal +z.",
+       R"({"width_x": 0.1, "width_y": 0.05})"}},
+     {"sphere",
+      read_sphere_mesh,
+      {"A sphere about the origin of the mesh; the particles are outside.",
+       R"({"radius": 0.01, "divisions": 2})"}}}};
 
 TriangleMesh read_triangles(ObjectReader& o)
 {
@@ -89,17 +127,23 @@ TriangleMesh read_triangles(ObjectReader& o)
     check("file");
     for (const Source& s : shapes) check(s.key);
     if (given.empty()) o.fail("", "a mesh needs one of the keys file, box, lathe, extrude, plate, sphere");
+    TriangleMesh mesh;
     for (const Source& s : shapes) {
-        if (given != s.key) continue;
-        ObjectReader shape = o.object(s.key);
-        TriangleMesh mesh = shape.located([&] { return s.read(shape); });
+        if (given != s.key && !o.records_schema()) continue;
+        ObjectReader shape = o.object(s.key, s.about);
+        mesh = shape.located([&] { return s.read(shape); });
         o.record(s.key, shape.finish());
-        return mesh;
     }
-    const std::string file = o.file("file");
-    const double scale = o.positive("scale", {}, 1);
+    if (given != "file" && !o.records_schema()) return mesh;
+    const std::string file =
+        o.file("file", {"OBJ or STL file. A relative path refers to the working directory of the program. "
+                        "The file must be below the folder of the case, unless --allow-paths is given.",
+                        R"("plough.stl")"});
+    const double scale = o.positive(
+        "scale", {"Factor of the coordinates of the file, for example 0.001 for mm [-].", "0.001"}, 1);
+    if (o.records_schema()) return mesh;
     try {
-        TriangleMesh mesh = read_mesh(file);
+        mesh = read_mesh(file);
         for (Vec3& v : mesh.vertex) v = scale * v;
         return mesh;
     } catch (const io::IoError& e) {
@@ -133,113 +177,43 @@ std::vector<NamedBoundary> read_mesh(ObjectReader& o, NamedBoundary b)
 {
     b.boundary.shape = Boundary::Shape::mesh;
     b.mesh = read_triangles(o);
-    b.two_sided = o.flag("two_sided", {}, false);
-    b.boundary.p = turned({1, {0, 0, 0}}, o.vec3("rotation", Vec3{0, 0, 0}));
+    b.two_sided = o.flag(
+        "two_sided", {"If true, particles are in contact with both sides of the triangles.", "true"}, false);
+    const Vec3 rotation =
+        o.vec3("rotation",
+               {"Rotation of the mesh about r at the start, a rotation vector in the global frame [rad].",
+                "[0, 0, 0.5]"},
+               Vec3{0, 0, 0});
+    b.boundary.p = turned({1, {0, 0, 0}}, rotation);
     o.located([&] { check_mesh(*b.mesh, b.name); });
-    std::optional<SolidBody> solid;
-    if (o.has("density")) solid = read_density(o, solid_inside(o, *b.mesh));
+    const SolidBody inside = o.has("density") ? solid_inside(o, *b.mesh) : SolidBody{};
+    const std::optional<SolidBody> solid =
+        read_density(o, inside,
+                     {"Density of the solid inside a closed mesh, instead of mass [kg/m^3]. Mass, centre of "
+                      "mass and inertia are those of the solid; inertia and centre replace the last two.",
+                      "7800"});
     read_body(o, b, solid);
     Vec3 centre = solid ? solid->centre : Vec3{0, 0, 0};
-    if (b.boundary.mass > 0) centre = o.vec3("centre", centre);
+    if (b.boundary.mass > 0)
+        centre = o.vec3("centre",
+                        {.text = "Centre of mass of a mesh with a mass [m], in the frame of the mesh. The "
+                                 "default is the origin, or with density the centre of the solid. Position "
+                                 "and loads in the output refer to it.",
+                         .example = "[0, 0, 0.02]",
+                         .computed = true},
+                        centre);
     if (centre != Vec3{0, 0, 0}) set_mesh_centre(b, centre);
     return {b};
 }
 
-/// Schema of an object with these properties. `required` lists names in quotes.
-std::string object_schema(const std::string& required, const std::string& properties,
-                          const std::string& example)
-{
-    return R"("type": "object", "additionalProperties": false, "required": [)" + required +
-           R"(], "properties": {)" + properties + R"(, "note": {"$ref": "#/$defs/note"}}, "examples": [)" +
-           example + "]";
-}
-
-const std::string
-    list_of_points =
-        R"("type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2,
-                              "maxItems": 2}, )",
-    edge =
-        R"("edge": {"description": "Longest edge of the cells into which each side is divided [m]; 0: one cell.",
-                            "type": "number", "minimum": 0, "default": 0, "examples": [0.01]})";
-
 const bool registered_mesh_keys = io::Registry<BoundaryType>::add(
     {"mesh",
-     {.description =
-          "Triangles, with a contact for each local minimum of the distance: with a triangle, an edge "
-          "or a vertex. One of the keys file, box, lathe, extrude, plate, sphere gives them, in a frame "
-          "of their own with the origin r. The normals point to the particles.",
-      .parts = {"boundary_keys", "body_keys"},
-      .keys =
-          {{"file",
-            "OBJ or STL file. A relative path refers to the working directory of the program. The file must "
-            "be below the folder of the case, unless --allow-paths is given.",
-            R"("type": "string", "examples": ["plough.stl"])"},
-           {"scale", "Factor of the coordinates of the file, for example 0.001 for mm [-].",
-            R"("$ref": "#/$defs/positive", "default": 1, "examples": [0.001])"},
-           {"box", "The sides of a box.",
-            object_schema(
-                R"("low", "high")",
-                R"("low": {"description": "Lower corner [m], in the frame of the mesh.", "$ref": "#/$defs/vector",
-                           "examples": [[0, 0, 0]]},
-                   "high": {"description": "Upper corner [m], in the frame of the mesh.", "$ref": "#/$defs/vector",
-                            "examples": [[0.1, 0.1, 0.2]]},
-                   "open": {"description": "Sides that are left open; at least one side must remain.", "type": "array",
-                            "items": {"enum": ["-x", "+x", "-y", "+y", "-z", "+z"]}, "uniqueItems": true,
-                            "maxItems": 5, "default": [], "examples": [["+z"]]},
-                   "inside": {"description": "If true, the particles are inside of the box; otherwise they are outside.",
-                              "type": "boolean", "default": true, "examples": [false]}, )" +
-                    edge,
-                R"({"low": [0, 0, 0], "high": [0.1, 0.1, 0.2], "open": ["+z"]})")},
-           {"lathe", "A surface of revolution about the z axis of the mesh.",
-            object_schema(
-                R"("profile")",
-                R"("profile": {"description": "Points [radius, z] [m], in the frame of the mesh. The particles are on the left of the profile, seen with the radius to the right and z up: a profile that leads upwards has the particles inside.", )" +
-                    list_of_points + R"("minItems": 2, "examples": [[[0.01, 0], [0.05, 0.06], [0.05, 0.2]]]},
-                   "segments": {"description": "Number of divisions of the circle [-].", "type": "integer", "minimum": 3,
-                                "default": 48, "examples": [32]})",
-                R"({"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]], "segments": 32})")},
-           {"extrude", "A prism along the z axis of the mesh, from z = 0; the particles are outside.",
-            object_schema(
-                R"("outline", "length")",
-                R"("outline": {"description": "Counterclockwise points [x, y] [m], in the frame of the mesh.", )" +
-                    list_of_points +
-                    R"("minItems": 3, "examples": [[[0, 0], [0.01, 0], [0, 0.02]]]},
-                   "length": {"description": "Length along z [m].", "$ref": "#/$defs/positive", "examples": [0.05]})",
-                R"({"outline": [[0, 0], [0.01, 0], [0, 0.02]], "length": 0.05})")},
-           {"plate", "A rectangle about the origin of the mesh with the normal +z.",
-            object_schema(
-                R"("width_x", "width_y")",
-                R"("width_x": {"description": "Width along x [m].", "$ref": "#/$defs/positive", "examples": [0.1]},
-                   "width_y": {"description": "Width along y [m].", "$ref": "#/$defs/positive", "examples": [0.1]}, )" +
-                    edge,
-                R"({"width_x": 0.1, "width_y": 0.05})")},
-           {"sphere", "A sphere about the origin of the mesh; the particles are outside.",
-            object_schema(
-                R"("radius")",
-                R"("radius": {"description": "Radius of the vertices [m].", "$ref": "#/$defs/positive", "examples": [0.01]},
-                   "divisions": {"description": "Number of divisions of the 20 triangles of an icosahedron into four [-].",
-                                 "type": "integer", "minimum": 0, "maximum": 8, "default": 3, "examples": [2]})",
-                R"({"radius": 0.01, "divisions": 2})")},
-           {"two_sided", "If true, particles are in contact with both sides of the triangles.",
-            R"("type": "boolean", "default": false, "examples": [true])"},
-           {"rotation",
-            "Rotation of the mesh about r at the start, a rotation vector in the global frame [rad].",
-            R"("$ref": "#/$defs/vector", "default": [0, 0, 0], "examples": [[0, 0, 0.5]])"},
-           {"density",
-            "Density of the solid inside a closed mesh, instead of mass [kg/m^3]. Mass, centre of mass and "
-            "inertia are those of the solid; inertia and centre replace the last two.",
-            R"("$ref": "#/$defs/positive", "examples": [7800])"},
-           {"centre",
-            "Centre of mass of a mesh with a mass [m], in the frame of the mesh. The default is the origin, "
-            "or "
-            "with density the centre of the solid. Position and loads in the output refer to it.",
-            R"("$ref": "#/$defs/vector", "examples": [[0, 0, 0.02]])"},
-           {"r",
-            "The origin of the mesh [m], in the global frame; numbers or formulas in t. The formulas give "
-            "the "
-            "displacement of the centre of mass.",
-            R"("$ref": "#/$defs/formulas", "default": [0, 0, 0], "examples": [[0, 0, -0.01]])"}},
-      .example = R"json("name": "hopper", "lathe": {"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]]})json"},
+     {.description = "Triangles, with a contact for each local minimum of the distance: with a triangle, an "
+                     "edge or a vertex. One of the keys file, box, lathe, extrude, plate, sphere gives them, "
+                     "in a frame of their own with the origin r. The normals point to the particles.",
+      .examples = {R"("name": "hopper", "lathe": {"profile": [[0.01, 0], [0.05, 0.06], [0.05, 0.2]]})"}},
+     "The origin of the mesh [m], in the global frame; numbers or formulas in t. The formulas give the "
+     "displacement of the centre of mass.",
      read_mesh});
 
 }  // namespace

@@ -4,61 +4,13 @@
 #include "io/nearest.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
+#include <map>
 
 namespace hilda::granular {
 
 namespace {
-
-/// Keys that a law reads: those of its own object, and those of the entry of `laws` that contains it. The
-/// texts and examples are for the schema.
-class LawKeys {
-public:
-    LawKeys(ObjectReader& own, ObjectReader& pair, const Material& i, const Material& j, const PairLaw& law)
-        : i(i), j(j), own(own), pair(pair), law(law)
-    {}
-
-    float positive(const char* key, const char*, double) { return static_cast<float>(own.positive(key)); }
-    float not_negative(const char* key, double default_value, const char*, double)
-    {
-        return static_cast<float>(own.not_negative(key, {}, default_value));
-    }
-    /// 0 if the key is absent. `other` is the name of the key with the value `least`.
-    float at_least(const char* key, float least, const char* other, const char*, double)
-    {
-        if (!own.has(key)) return 0;
-        const double x = own.positive(key);
-        if (static_cast<float>(x) < least)
-            own.fail(key, std::string(key) + " must not be less than " + other + ", " +
-                              io::shortest(static_cast<double>(least)) + ", got " + io::shortest(x));
-        return static_cast<float>(x);
-    }
-    int flag(const char* key, const char*) { return own.flag(key, {}, false) ? 1 : 0; }
-    double restitution()
-    {
-        constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
-        return std::max(pair.fraction("restitution"), least);
-    }
-    float static_friction()
-    {
-        return pair.has("mu_s") ? static_cast<float>(pair.not_negative("mu_s")) : kinetic_friction();
-    }
-    float kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
-    /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
-    /// then does so too
-    bool material_normal() const
-    {
-        bool result = false;
-        law.normal.visit([&]<class Law>(const Law&) { result = has_material_stiffness<Law>; });
-        return result;
-    }
-
-    const Material &i, &j;
-
-private:
-    ObjectReader &own, &pair;
-    const PairLaw& law;
-};
 
 /// Checks that the stiffnesses that are computed from several keys are in the range of single precision.
 void check_stiffness(ObjectReader& pair, const Material& i, const Material& j, const PairLaw& law)
@@ -79,7 +31,46 @@ void check_stiffness(ObjectReader& pair, const Material& i, const Material& j, c
     });
 }
 
+/// Notes the keys of an entry of `laws` that several laws read.
+void note_coefficients(ObjectReader& pair)
+{
+    pair.note("restitution", "fraction",
+              {"Coefficient of restitution e [-]. Required with the normal law hertz, and if the tangential "
+               "law has a spring whose stiffness is that of the materials, with hunt-crossley and "
+               "kuwabara-kono. 0 is treated as 1e-7, with a notice.",
+               "0.7"});
+    pair.note("mu", "not_negative",
+              {"Kinetic coefficient of friction [-]. Required if the tangential law is not none or the spin "
+               "law is torsional-spring.",
+               "0.3"});
+    pair.note(
+        "mu_s", "not_negative",
+        {"Static coefficient of friction [-]. It must not be less than mu. By default equal to mu.", "0.4"});
+}
+
+/// Notes the key of the law of this kind.
+void note_kind(ObjectReader& pair, const std::string& kind, const std::string& standard)
+{
+    static const std::map<std::string, const char*> examples = {
+        {"normal", R"({"law": "hertz"})"},
+        {"tangential", R"({"law": "mindlin"})"},
+        {"rolling", R"({"law": "epsd", "mu_r": 0.05})"},
+        {"spin", R"({"law": "torsional-spring"})"},
+        {"cohesion", R"({"law": "sjkr", "k": 1000})"}};
+    if (!pair.records_schema()) return;
+    const std::string schema =
+        R"("$ref": "#/$defs/)" + kind + R"(_law", "default": {"law": )" + io::in_quotes(standard) + '}';
+    pair.note(kind, schema, {title_of_kind(kind) + '.', examples.at(kind)});
+}
+
 }  // namespace
+
+std::string title_of_kind(const std::string& kind)
+{
+    std::string title = kind + " law";
+    title[0] = static_cast<char>(std::toupper(title[0]));
+    return title;
+}
 
 int material_named(const std::string& name, const std::vector<Material>& materials,
                    const std::function<void(const std::string&)>& fail)
@@ -94,6 +85,14 @@ int material_named(const std::string& name, const std::vector<Material>& materia
 
 std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>& materials)
 {
+    pair.defines(
+        "law", "Contact law",
+        "Contact law between two materials: one law for each of the normal force, the tangential force, "
+        "rolling, spin and cohesion. E* and G* are the effective moduli of the two materials, R* the "
+        "effective radius, m* the effective mass, delta the overlap, F_n the normal force.");
+    pair.note("between", R"("type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2)",
+              {"Names of the two materials. It may be omitted if there is only one material.",
+               R"(["glass", "steel"])"});
     std::array<int, 2> ij = {0, 0};
     if (materials.size() == 1 && pair.find("between") == nullptr) return ij;
     const io::Json::List& names = pair.list("between", true);
@@ -110,15 +109,25 @@ std::array<int, 2> read_between(ObjectReader& pair, const std::vector<Material>&
 
 PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std::vector<std::string>& notices)
 {
+    note_coefficients(pair);
     if (pair.has("restitution") && pair.fraction("restitution") == 0)
         notices.push_back(pair.place("restitution") +
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
     for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
     PairLaw law;
-    if (pair.one_of("lever", {"radius", "contact"}, {}, "radius") == "contact") law.lever = Lever::contact;
+    const std::string lever =
+        pair.one_of("lever", {"radius", "contact"},
+                    {"Lever arms of the tangential force: radius, the radii of the two bodies; contact, the "
+                     "distances of the centres from a point within the overlap, R - delta/2 between "
+                     "particles of equal radii and against a boundary.",
+                     R"("contact")"},
+                    "radius");
+    if (lever == "contact") law.lever = Lever::contact;
     for_each_kind([&]<class Laws>(const char* kind, const char* standard, Laws PairLaw::*member) {
         static const io::JsonSource none("{}", "");
-        ObjectReader own = pair.find(kind) != nullptr ? pair.object(kind) : ObjectReader(none, none.root, "");
+        note_kind(pair, kind, standard);
+        ObjectReader own =
+            pair.find(kind) != nullptr ? pair.object(kind, {}, kind) : ObjectReader(none, none.root, "");
         std::vector<std::string> names;
         Laws::for_each([&](const auto& known) { names.emplace_back(known.name); });
         LawKeys keys(own, pair, i, j, law);

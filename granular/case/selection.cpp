@@ -3,6 +3,7 @@
 
 #include "granular/world/groups.hpp"
 #include "granular/world/world.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <algorithm>
 #include <set>
@@ -33,9 +34,16 @@ Selection read_selection(ObjectReader o)
     Selection s;
     CutRegion& region = s.region;
     const std::string type = o.one_of("type", {"box", "cylinder", "half_space"});
+    io::defines_type(
+        o, {"Cut", "type", "Type of the region."}, "cut_" + type, type,
+        {.description = type == "box"        ? "A box along the axes."
+                        : type == "cylinder" ? "A cylinder between two planes perpendicular to its axis."
+                                             : "All points on one side of a plane.",
+         .examples = {}});
     if (type == "box") {
         region.shape = CutRegion::Shape::box;
-        region.low = o.vec3("low"), region.high = o.vec3("high");
+        region.low = o.vec3("low", {"Lower corner [m], in the global frame.", "[0, 0, 0.03]"});
+        region.high = o.vec3("high", {"Upper corner [m], in the global frame.", "[0.03, 0.02, 0.1]"});
         for (const auto& [low, high, axis] : {std::tuple{region.low.x, region.high.x, 0u},
                                               {region.low.y, region.high.y, 1u},
                                               {region.low.z, region.high.z, 2u}})
@@ -45,10 +53,24 @@ Selection read_selection(ObjectReader o)
     } else {
         const bool is_cylinder = type == "cylinder";
         region.shape = is_cylinder ? CutRegion::Shape::cylinder : CutRegion::Shape::half_space;
-        region.r = o.vec3("r");
-        region.axis = o.direction(is_cylinder ? "axis" : "normal");
-        if (is_cylinder) region.radius = o.positive("radius"), region.length = o.positive("length");
+        region.r = o.vec3("r", {is_cylinder ? "Centre of its base [m], in the global frame."
+                                            : "A point of the plane [m], in the global frame.",
+                                "[0, 0, 0.03]"});
+        region.axis =
+            is_cylinder
+                ? o.direction("axis", {"Direction from the base to the other end, in the global frame [-].",
+                                       "[0, 0, 1]"})
+                : o.direction("normal", {"Normal of the plane into the half-space whose particles are "
+                                         "removed, in the global frame [-].",
+                                         "[0, 0, 1]"});
+        if (is_cylinder) {
+            region.radius = o.positive("radius", {"Radius of the cylinder [m].", "0.01"});
+            region.length = o.positive("length", {"Length along the axis [m].", "0.1"});
+        }
     }
+    o.note("group", "name",
+           {"Only the particles of this group are removed. By default those of all groups and of none.",
+            R"("bed")"});
     if (o.find("group") != nullptr) s.group = o.name("group");
     o.finish();
     return s;

@@ -53,9 +53,7 @@ io::JsonSource changed_source(const std::string& text, const std::string& file,
 {
     io::JsonSource source(text, file);
     source.within = environment.folder, source.base = environment.base;
-    source.rename("every", "interval");
-    source.rename("frames_every", "frame_interval");
-    source.rename("checkpoint_every", "checkpoint_interval");
+    for (const auto& [old_name, name] : renamed_keys) source.rename(old_name, name);
     for (const Setting& setting : environment.settings)
         source.set(with_numbers(source.root, setting.change),
                    setting.origin.empty() ? "--set " + io::in_quotes(setting.change) : setting.origin);

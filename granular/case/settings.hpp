@@ -5,6 +5,7 @@
 
 #include "io/json_source.hpp"
 
+#include <array>
 #include <string>
 
 namespace hilda::granular {
@@ -17,6 +18,10 @@ struct Setting {
 
 /// A JSON pointer, or a change of an entry, with the number of a boundary or insertion in place of its name
 std::string with_numbers(const io::Json& root, const std::string& pointer);
+
+/// Old names of keys of a case, which are still read, and their names
+inline const std::array<std::array<std::string, 2>, 3> renamed_keys = {
+    {{"every", "interval"}, {"frames_every", "frame_interval"}, {"checkpoint_every", "checkpoint_interval"}}};
 
 struct Environment;
 

@@ -2,6 +2,7 @@
 #include "granular/insertion/region.hpp"
 
 #include "granular/world/value_text.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <cmath>
 
@@ -57,13 +58,24 @@ InsertionRegion read_region(ObjectReader o, double R)
 {
     InsertionRegion region;
     const std::string type = o.one_of("type", {"box", "cylinder", "disk"});
+    io::defines_type(
+        o, {"Region", "type", "Type of the region."}, "region_" + type, type,
+        {.description =
+             type == "box" ? "A box along the axes."
+             : type == "cylinder"
+                 ? "A cylinder between two planes perpendicular to its axis."
+                 : "A disk. The centres of the particles lie on it, and the particles within its radius.",
+         .examples = {}});
     const auto at_least = [&](const char* key, double value, double least) {
         if (!(value >= least))
             o.fail(key, std::string(key) + " must be at least " + io::shortest(least) +
                             ", so that the largest particle has place, got " + io::shortest(value));
     };
     if (type == "box") {
-        region.low = o.vec3("low"), region.high = o.vec3("high");
+        region.low = o.vec3("low", {"Lower corner [m], in the global frame.", "[0, 0, 0.09]"});
+        region.high = o.vec3(
+            "high", {"Upper corner [m], in the global frame. The box must be at least one diameter wide.",
+                     "[0.03, 0.02, 0.1]"});
         for (const auto& [low, high, axis] : {std::tuple{region.low.x, region.high.x, 0u},
                                               {region.low.y, region.high.y, 1u},
                                               {region.low.z, region.high.z, 2u}})
@@ -74,12 +86,22 @@ InsertionRegion read_region(ObjectReader o, double R)
     } else {
         const bool is_disk = type == "disk";
         region.shape = is_disk ? InsertionRegion::Shape::disk : InsertionRegion::Shape::cylinder;
-        region.r = o.vec3("r");
-        region.axis = o.direction(is_disk ? "normal" : "axis");
-        region.radius = o.positive("radius");
+        region.r = o.vec3("r", {is_disk ? "Centre [m], in the global frame."
+                                        : "Centre of its base [m], in the global frame.",
+                                "[0, 0, 0.1]"});
+        region.axis =
+            is_disk
+                ? o.direction("normal", {"Normal of the disk, in the global frame [-].", "[0, 0, 1]"})
+                : o.direction("axis", {"Direction from the base to the other end, in the global frame [-].",
+                                       "[0, 0, 1]"});
+        region.radius = o.positive(
+            "radius", {is_disk ? "Radius of the disk [m]." : "Radius of the cylinder [m].", "0.04"});
         at_least("radius", region.radius, R);
-        if (!is_disk) region.length = o.positive("length");
-        if (!is_disk) at_least("length", region.length, 2 * R);
+        if (!is_disk) {
+            region.length =
+                o.positive("length", {"Length along the axis, at least one diameter [m].", "0.02"});
+            at_least("length", region.length, 2 * R);
+        }
     }
     o.finish();
     return region;

@@ -50,19 +50,30 @@ std::vector<Sizes::Piece> read_uniform(ObjectReader& o)
 
 std::vector<Sizes::Piece> read_normal(ObjectReader& o)
 {
-    const double mean = o.positive("mean"), s = o.positive("deviation");
+    const double mean = o.positive("mean", {"Mean radius of the distribution without limits [m].", "1e-3"});
+    const double s =
+        o.positive("deviation", {"Standard deviation of the radius without limits [m].", "1e-4"});
     return normal_pieces(
-        o, read_limits(o, std::max(mean - 3 * s, mean / 10), mean + 3 * s),
+        o,
+        read_limits(o, std::max(mean - 3 * s, mean / 10), mean + 3 * s,
+                    " By default three deviations below the mean, but at least a tenth of it.",
+                    " By default three deviations above the mean."),
         [&](double R) { return (R - mean) / s; }, [&](double z) { return mean + s * z; });
 }
 
 std::vector<Sizes::Piece> read_lognormal(ObjectReader& o)
 {
-    const double median = o.positive("median"), s = o.positive("deviation");
+    const double median =
+        o.positive("median", {"Median radius of the distribution without limits [m].", "1e-3"});
+    const double s = o.positive(
+        "deviation", {"Standard deviation of the natural logarithm of the radius without limits [-].", "0.2",
+                      R"("maximum": 3)"});
     constexpr double most = 3;  // radii over 9 decades within three deviations
     if (s > most) o.fail("deviation", "deviation must be at most 3, got " + io::shortest(s));
     return normal_pieces(
-        o, read_limits(o, median * std::exp(-3 * s), median * std::exp(3 * s)),
+        o,
+        read_limits(o, median * std::exp(-3 * s), median * std::exp(3 * s),
+                    " By default median exp(-3 deviation).", " By default median exp(3 deviation)."),
         [&](double R) { return std::log(R / median) / s; },
         [&](double z) { return median * std::exp(s * z); });
 }
@@ -81,6 +92,16 @@ std::vector<double> read_list(ObjectReader& o, const char* key, std::size_t coun
 
 std::vector<Sizes::Piece> read_table(ObjectReader& o)
 {
+    o.note("radii", R"("type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 1)",
+           {"Radii in ascending order [m].", "[5e-4, 1e-3]"});
+    constexpr const char* shares =
+        R"("type": "array", "items": {"type": "number", "minimum": 0}, "minItems": 1)";
+    o.note("fractions", shares,
+           {"Fraction of the particles of each radius, over the sum of all [-].", "[0.3, 0.7]"});
+    o.note("passing", shares,
+           {"Fraction of the particles below each radius, linear between the radii [-]. It begins with 0 and "
+            "ends with 1.",
+            "[0, 1]"});
     const std::vector<double> radii = read_list(o, "radii", 0);
     for (std::size_t k = 0; k < radii.size(); ++k)
         if (!(radii[k] >= std::numeric_limits<float>::min()) || (k > 0 && !(radii[k] > radii[k - 1])))
@@ -117,74 +138,29 @@ std::vector<Sizes::Piece> read_table(ObjectReader& o)
     return all;
 }
 
-io::KeySchema limit(const char* key, const std::string& description, bool required, const char* example)
-{
-    return {key, description, R"("$ref": "#/$defs/positive", "examples": [)" + std::string(example) + ']',
-            required};
-}
-
-constexpr const char* list_of_shares =
-    R"("type": "array", "items": {"type": "number", "minimum": 0}, "minItems": 1, "examples": )";
-
 const bool registered_size_types =
     io::Registry<SizeType>::add(
         {.name = "uniform",
          .schema = {.description = "Radii with a constant density between two limits.",
-                    .parts = {"size_keys"},
-                    .keys = {limit("least_radius", "Smallest radius [m].", true, "8e-4"),
-                             limit("largest_radius", "Largest radius [m].", true, "1.2e-3")},
-                    .example = R"("least_radius": 8e-4, "largest_radius": 1.2e-3)"},
+                    .examples = {R"("least_radius": 8e-4, "largest_radius": 1.2e-3)"}},
          .read = read_uniform}) &&
     io::Registry<SizeType>::add(
         {.name = "normal",
          .schema = {.description = "Normally distributed radii, without those beyond the two limits.",
-                    .parts = {"size_keys"},
-                    .keys = {limit("mean", "Mean radius of the distribution without limits [m].", true,
-                                   "1e-3"),
-                             limit("deviation", "Standard deviation of the radius without limits [m].", true,
-                                   "1e-4"),
-                             limit("least_radius",
-                                   "Smallest radius [m]. By default three deviations below the mean, but at "
-                                   "least a tenth of it.",
-                                   false, "8e-4"),
-                             limit("largest_radius",
-                                   "Largest radius [m]. By default three deviations above the mean.",
-                                   false, "1.2e-3")},
-                    .example = R"("mean": 1e-3, "deviation": 1e-4)"},
+                    .examples = {R"("mean": 1e-3, "deviation": 1e-4)"}},
          .read = read_normal}) &&
     io::Registry<SizeType>::add(
         {.name = "lognormal",
-         .schema =
-             {.description =
-                  "Radii with a normally distributed logarithm, without those beyond the two limits.",
-              .parts = {"size_keys"},
-              .keys = {limit("median", "Median radius of the distribution without limits [m].", true, "1e-3"),
-                       {"deviation",
-                        "Standard deviation of the natural logarithm of the radius without limits [-].",
-                        R"("type": "number", "exclusiveMinimum": 0, "maximum": 3, "examples": [0.2])", true},
-                       limit("least_radius", "Smallest radius [m]. By default median exp(-3 deviation).",
-                             false, "8e-4"),
-                       limit("largest_radius", "Largest radius [m]. By default median exp(3 deviation).",
-                             false, "1.2e-3")},
-              .example = R"("median": 1e-3, "deviation": 0.2, "by": "mass")"},
+         .schema = {.description =
+                        "Radii with a normally distributed logarithm, without those beyond the two limits.",
+                    .examples = {R"("median": 1e-3, "deviation": 0.2, "by": "mass")"}},
          .read = read_lognormal}) &&
     io::Registry<SizeType>::add(
         {.name = "table",
-         .schema =
-             {.description = "Classes of equal radii with fractions, or a sieve curve with the passing "
-                             "fractions. One of the keys fractions and passing is required.",
-              .parts = {"size_keys"},
-              .keys =
-                  {{"radii", "Radii in ascending order [m].",
-                    R"("type": "array", "items": {"$ref": "#/$defs/positive"}, "minItems": 1, "examples": [[5e-4, 1e-3]])",
-                    true},
-                   {"fractions", "Fraction of the particles of each radius, over the sum of all [-].",
-                    std::string(list_of_shares) + "[[0.3, 0.7]]"},
-                   {"passing",
-                    "Fraction of the particles below each radius, linear between the radii [-]. It begins "
-                    "with 0 and ends with 1.",
-                    std::string(list_of_shares) + "[[0, 1]]"}},
-              .example = R"("radii": [5e-4, 8e-4, 1e-3], "passing": [0, 0.3, 1], "by": "mass")"},
+         .schema = {.description = "Classes of equal radii with fractions, or a sieve curve with the passing "
+                                   "fractions. One of the keys fractions and passing is required.",
+                    .examples = {R"("radii": [5e-4, 8e-4, 1e-3], "passing": [0, 0.3, 1], "by": "mass")"},
+                    .rest = R"("oneOf": [{"required": ["fractions"]}, {"required": ["passing"]}])"},
          .read = read_table});
 
 }  // namespace

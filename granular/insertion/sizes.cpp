@@ -61,20 +61,36 @@ double Sizes::mean_cube() const
 
 Sizes read_sizes(ObjectReader o)
 {
-    const SizeType& type = *io::Registry<SizeType>::find(o.one_of("type", io::Registry<SizeType>::names()));
-    const bool by_mass = o.one_of("by", {"number", "mass"}, {}, "number") == "mass";
+    const auto& type =
+        io::read_type<SizeType>(o, {"Size distribution", "type", "Type of the distribution."}, "sizes_");
+    const std::string by =
+        o.one_of("by", {"number", "mass"},
+                 {"Whether the shares of the distribution are of the number or of the mass of the particles.",
+                  R"("mass")"},
+                 "number");
     const std::vector<Sizes::Piece> pieces = type.read(o);
     o.finish();
-    return {pieces, by_mass ? Share::of_mass : Share::of_number};
+    return {pieces, by == "mass" ? Share::of_mass : Share::of_number};
 }
 
 Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback)
 {
-    if (o.has("sizes")) {
-        for (const char* key : {"radius", "least_radius"})
-            if (o.has(key)) o.fail(key, std::string(key) + " must not be given together with sizes");
-        return read_sizes(o.object("sizes"));
+    o.note("radius", "positive",
+           {"Radius of the particles, or the largest radius [m]. Either radius or sizes is required, unless "
+            "there is clump.",
+            "0.001"});
+    o.note("least_radius", "positive",
+           {"Smallest radius [m]. Radii are uniformly distributed between least_radius and radius. It must "
+            "not exceed radius. By default equal to radius.",
+            "0.0008"});
+    o.note("sizes", R"("$ref": "#/$defs/sizes")",
+           {"Distribution of the radii, in place of radius and least_radius.",
+            R"({"type": "lognormal", "median": 0.001, "deviation": 0.2})"});
+    for (const std::string key : {"radius", "least_radius"}) {
+        o.note_exclusive(std::array<std::string, 2>{key, "sizes"});
+        if (o.has(key) && o.has("sizes")) o.fail(key, key + " must not be given together with sizes");
     }
+    if (o.has("sizes")) return read_sizes(o.object("sizes", {}, "sizes"));
     const double radius = o.positive("radius", {}, fallback), least = o.number("least_radius", {}, radius);
     if (least > 0 && least <= radius)
         o.positive("least_radius", {}, radius);  // in single precision
@@ -85,10 +101,15 @@ Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback)
 }
 
 std::pair<double, double> read_limits(ObjectReader& o, const std::optional<double>& least,
-                                      const std::optional<double>& largest)
+                                      const std::optional<double>& largest, const std::string& about_least,
+                                      const std::string& about_largest)
 {
-    const double low = o.positive("least_radius", {}, least),
-                 high = o.positive("largest_radius", {}, largest);
+    const std::string first = "Smallest radius [m]." + about_least,
+                      second = "Largest radius [m]." + about_largest;
+    const double low =
+                     o.positive("least_radius", {.text = first, .example = "8e-4", .computed = true}, least),
+                 high = o.positive("largest_radius", {.text = second, .example = "1.2e-3", .computed = true},
+                                   largest);
     if (!(low <= high))
         o.fail(o.has("least_radius") ? "least_radius" : "largest_radius",
                "least_radius must not be above largest_radius, " + io::shortest(high) + ", got " +

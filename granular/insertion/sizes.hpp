@@ -5,7 +5,7 @@
 
 #include "granular/backend/split_mix.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/keyed_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <vector>
 
@@ -54,7 +54,7 @@ private:
 /// A type of size distribution. A file registers it by io::Registry<SizeType>::add.
 struct SizeType {
     std::string name;  ///< value of the key "type"
-    io::KeyedSchema schema;
+    io::TypeSchema schema;
     /// Reads the keys besides type and by. Throws io::InvalidInput.
     std::vector<Sizes::Piece> (*read)(ObjectReader& o) = nullptr;
 };
@@ -66,9 +66,17 @@ Sizes read_sizes(ObjectReader o);
 /// the radii are uniformly distributed. Throws io::InvalidInput.
 Sizes read_radius(ObjectReader& o, const std::optional<double>& fallback = {});
 
+/// What the schema says about keys of fills and insertions
+inline constexpr io::About
+    about_random_v = {"Magnitude of a velocity in a random direction that is added for each particle [m/s].",
+                      "0.1"},
+    about_seed = {"Seed of the random numbers.", "2"};
+
 /// Reads the keys least_radius and largest_radius, between which a distribution is cut off, with defaults
-/// [m]. Throws io::InvalidInput.
+/// [m]. The two texts are the sentences of their descriptions on the defaults. Throws io::InvalidInput.
 std::pair<double, double> read_limits(ObjectReader& o, const std::optional<double>& least,
-                                      const std::optional<double>& largest);
+                                      const std::optional<double>& largest,
+                                      const std::string& about_least = "",
+                                      const std::string& about_largest = "");
 
 }  // namespace hilda::granular

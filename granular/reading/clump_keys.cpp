@@ -43,20 +43,48 @@ std::array<double, 4> read_orientation(ObjectReader& o)
 
 ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, const Material& properties)
 {
-    const std::string name = o.name("name", {}, "clump " + std::to_string(world.clump_templates().size()));
+    const std::string name = o.name(
+        "name",
+        {.text = "Name, by which particles and fills refer to the template. By default clump 0, clump 1, ...",
+         .example = R"("pair")",
+         .computed = true},
+        "clump " + std::to_string(world.clump_templates().size()));
     for (const ClumpTemplate& other : world.clump_templates())
         if (other.name == name) o.fail("name", "two clumps have the same name, got " + io::described(name));
     std::vector<Sphere> spheres;
-    for (ObjectReader& s : o.objects("spheres")) {
-        spheres.push_back({s.vec3("r", Vec3{0, 0, 0}), s.positive("radius")});
+    for (ObjectReader& s : o.objects("spheres", "clump_sphere",
+                                     {"The spheres, at most 256.",
+                                      R"([{"r": [5e-4, 0, 0], "radius": 1e-3}, )"
+                                      R"({"r": [-5e-4, 0, 0], "radius": 1e-3}])",
+                                      R"("maxItems": 256)"},
+                                     true)) {
+        s.defines("clump_sphere", "Sphere of a clump", "A sphere of a template.");
+        const Vec3 r =
+            s.vec3("r", {"Centre [m], in the frame of the template.", "[5e-4, 0, 0]"}, Vec3{0, 0, 0});
+        spheres.push_back({r, s.positive("radius", {"Radius [m].", "0.001"})});
         s.finish();
     }
     if (spheres.empty()) o.fail("spheres", "a clump must have at least one sphere, got none");
     o.exclude("density", "mass");
+    o.note("mass", "positive", {"Mass [kg], instead of density; together with inertia.", "1.5e-5"});
+    o.note("inertia", R"("$ref": "#/$defs/inertia")",
+           {"Inertia about the centre of mass [kg m^2], in the frame of the template: one moment for every "
+            "axis, the three principal moments if the axes of the frame are principal axes, or the symmetric "
+            "matrix by rows. The principal moments must satisfy the triangle inequality. Only with mass.",
+            "[6e-12, 1e-11, 1e-11]"});
+    o.note("centre", "vector",
+           {"Centre of mass [m], in the frame of the template. By default that of the union of the spheres. "
+            "Only with mass.",
+            "[0, 0, 1e-4]"});
     if (!o.has("mass")) {
         for (const char* key : {"inertia", "centre"})
             if (o.has(key)) o.fail(key, std::string(key) + " needs mass, got none");
-        const double density = o.positive("density", {}, properties.density);
+        const double density = o.positive(
+            "density",
+            {.text = "Density of the union of the spheres [kg/m^3]. By default that of the material.",
+             .example = "2500",
+             .computed = true},
+            properties.density);
         return o.located([&] { return solid_clump(name, spheres, density, material); });
     }
     ClumpTemplate t = o.located([&] { return solid_clump(name, spheres, 1, material); });
@@ -64,21 +92,36 @@ ClumpTemplate read_clump(ObjectReader& o, const World& world, int material, cons
     if (!o.has("inertia")) o.fail("inertia is required together with mass");
     t.inertia = read_inertia(o);
     if (t.inertia.is_zero()) o.fail("inertia", "inertia must be positive, got 0");
-    t.centre = o.vec3("centre", t.centre);
+    t.centre = o.vec3("centre", {}, t.centre);
     return t;
 }
 
 Clump read_single_clump(ObjectReader& o, const World& world, std::uint16_t replica)
 {
     refuse_with_clump(o, {"radius", "material", "fixed", "attached_to", "force"});
+    o.note("clump", "text",
+           {"Name of an entry of clumps: the entry is a clump with its spheres and material. Not together "
+            "with radius, material, fixed, force and attached_to.",
+            R"("pair")"});
     Clump c{.shape = template_of(o, world),
             .r = o.vec3("r"),
-            .v = o.vec3("v", Vec3{0, 0, 0}),
-            .omega = o.vec3("omega", Vec3{0, 0, 0}),
-            .scale = o.positive("scale", {}, 1),
+            .v = o.vec3("v", {}, Vec3{0, 0, 0}),
+            .omega = o.vec3("omega", {}, Vec3{0, 0, 0}),
+            .scale = o.positive(
+                "scale",
+                {"Factor of the lengths of the clump, at the same density [-]. Only with clump.", "0.9"}, 1),
             .replica = replica};
     if (o.has("orientation")) c.e = read_orientation(o);
     return c;
+}
+
+void note_clumps(ObjectReader& o, const char* about_clump)
+{
+    o.note("clump", "text", {about_clump, R"("pair")"});
+    o.note("orientation", R"("type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4)",
+           {"Orientation of all clumps as Euler parameters e0, e1, e2, e3 [-], from the frame of the "
+            "template to the global frame. By default each clump has a random orientation. Only with clump.",
+            "[1, 0, 0, 0]"});
 }
 
 PlacedClumps read_placed_clumps(ObjectReader& o, const World& world)

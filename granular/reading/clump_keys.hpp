@@ -32,8 +32,10 @@ public:
     Clump at(const Particle& place, Random& random) const;
 };
 
-/// Reads the keys clump and orientation of an entry of `fill` or `insert`.
-/// Throws io::PlacedError.
+/// Notes the keys clump and orientation of an entry of `fill` or `insert` for the schema. `about_clump`:
+/// description of the first one
+void note_clumps(ObjectReader& o, const char* about_clump);
+/// Reads these keys. Throws io::PlacedError.
 PlacedClumps read_placed_clumps(ObjectReader& o, const World& world);
 
 }  // namespace hilda::granular

@@ -13,23 +13,38 @@ ObjectReader::ObjectReader(io::ObjectReader o) : io::ObjectReader(std::move(o))
     least_positive = std::numeric_limits<float>::min();
 }
 
-Vec3 ObjectReader::vec3(std::string_view key, const std::optional<Vec3>& fallback)
+Vec3 ObjectReader::vec3(std::string_view key, const io::About& about, const std::optional<Vec3>& fallback)
 {
+    if (records_schema()) {
+        const io::Json by_default = fallback ? io::Json{fallback->x, fallback->y, fallback->z} : io::Json();
+        note(key, "vector", about, fallback ? &by_default : nullptr);
+    }
     if (fallback && find(key) == nullptr) return *fallback;
     const std::vector<double> x = numbers(key, 3);
     return {x[0], x[1], x[2]};
 }
 
-Vec3 ObjectReader::direction(std::string_view key)
+Vec3 ObjectReader::direction(std::string_view key, const io::About& about)
 {
+    note(key, "direction", about);
     const Vec3 v = vec3(key);
     if (!(v.norm() > 0))
         fail(key, std::string(key) + " must have a direction, got " + io::described(*find(key)));
     return (1 / v.norm()) * v;
 }
 
-std::array<bool, 6> ObjectReader::sides(std::string_view key)
+std::optional<double> ObjectReader::optional_positive(std::string_view key, const io::About& about)
 {
+    note(key, "positive", about);
+    return has(key) ? std::optional(positive(key)) : std::nullopt;
+}
+
+std::array<bool, 6> ObjectReader::sides(std::string_view key, const io::About& about)
+{
+    note(key,
+         R"("type": "array", "items": {"enum": ["-x", "+x", "-y", "+y", "-z", "+z"]}, )"
+         R"("uniqueItems": true, "default": [])",
+         about);
     std::array<bool, 6> listed{};
     const io::Json::List& all = list(key, false);
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -65,16 +80,25 @@ std::vector<bool> flag_list(const ObjectReader& o, std::string_view key, const i
 
 }  // namespace
 
-std::array<bool, 3> ObjectReader::flags(std::string_view key, const std::array<bool, 3>& fallback)
+std::array<bool, 3> ObjectReader::flags(std::string_view key, const io::About& about,
+                                        const std::array<bool, 3>& fallback)
 {
+    const io::Json by_default = io::Json::List(fallback.begin(), fallback.end());
+    note(key, R"("type": "array", "items": {"type": "boolean"}, "minItems": 3, "maxItems": 3)", about,
+         &by_default);
     const io::Json* v = find(key);
     if (v == nullptr) return fallback;
     const auto x = flag_list(*this, key, *v, "3", v->list() != nullptr && v->size() == 3);
     return {x[0], x[1], x[2]};
 }
 
-std::array<bool, 6> ObjectReader::six_flags(std::string_view key, bool others)
+std::array<bool, 6> ObjectReader::six_flags(std::string_view key, const io::About& about, bool others)
 {
+    const io::Json by_default = {true, true, true, others, others, others};
+    note(key,
+         R"("type": "array", "items": {"type": "boolean"}, )"
+         R"("oneOf": [{"minItems": 3, "maxItems": 3}, {"minItems": 6, "maxItems": 6}])",
+         about, &by_default);
     const io::Json* v = find(key);
     if (v == nullptr) return {true, true, true, others, others, others};
     const auto x =
@@ -100,10 +124,10 @@ VectorFormula ObjectReader::formulas(std::string_view key)
     return all;
 }
 
-std::string ObjectReader::file(std::string_view key)
+std::string ObjectReader::file(std::string_view key, const io::About& about)
 {
     namespace fs = std::filesystem;
-    std::string path = text(key);
+    std::string path = text(key, about);
     if (!source.base.empty()) path = (fs::path(source.base) / path).string();
     source.files.push_back(path);
     if (source.within.empty()) return path;
@@ -117,10 +141,16 @@ std::string ObjectReader::file(std::string_view key)
     return path;
 }
 
-std::vector<ObjectReader> ObjectReader::objects(std::string_view key)
+std::vector<ObjectReader> ObjectReader::objects(std::string_view key, std::string_view of,
+                                                const io::About& about, bool required)
 {
+    note(key,
+         R"("type": "array", "items": {"$ref": "#/$defs/)" + std::string(of) + R"("}, )" +
+             (required ? R"("minItems": 1)" : R"("default": [])"),
+         about);
     std::vector<ObjectReader> all;
-    for (std::size_t k = 0; k < list(key, false).size(); ++k) all.push_back(object(key, k));
+    const std::size_t count = list(key, required && records_schema()).size();
+    for (std::size_t k = 0; k < count; ++k) all.push_back(object(key, k));
     return all;
 }
 

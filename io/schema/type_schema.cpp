@@ -17,10 +17,11 @@ void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& defi
 }
 
 void add_choice(Json& definitions, const std::string& name, const std::string& title,
-                const std::string& description, const std::vector<std::string>& types)
+                const std::string& description, const std::vector<std::string>& types,
+                const std::string& prefix)
 {
     Json references = Json::array();
-    for (const std::string& type : types) references.push_back({{"$ref", "#/$defs/" + type}});
+    for (const std::string& type : types) references.push_back({{"$ref", "#/$defs/" + prefix + type}});
     definitions[name] = {{"title", title},
                          {"description", description},
                          {"type", "object"},

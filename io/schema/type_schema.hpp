@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "io/registry.hpp"
 #include "io/schema/schema_recorder.hpp"
 
 #include <string>
@@ -33,6 +34,16 @@ std::string example_text(const std::string& key, const std::string& name, const 
 void defines_type(ObjectReader& o, const TypeKind& kind, const std::string& definition,
                   const std::string& name, const TypeSchema& schema);
 
+/// The registered type that the key of the kind names. Notes for the schema that o is of it, with the
+/// definition PREFIX NAME.
+template <class Type>
+const Type& read_type(ObjectReader& o, const TypeKind& kind, const std::string& prefix = "")
+{
+    const Type& type = *Registry<Type>::find(o.one_of(kind.key, Registry<Type>::names()));
+    defines_type(o, kind, prefix + type.name, type.name, type.schema);
+    return type;
+}
+
 /// Reads the examples of a type for the schema: `read` is called with a Reader of each of them.
 template <class Reader, class Read>
 void record_examples(SchemaRecorder& recorder, const TypeKind& kind, const std::string& definition,
@@ -51,8 +62,9 @@ void record_examples(SchemaRecorder& recorder, const TypeKind& kind, const std::
     }
 }
 
-/// Adds the definition of objects of several types: one of the definitions with the names `types`.
+/// Adds the definition of objects of several types, each with a definition PREFIX TYPE.
 void add_choice(Json& definitions, const std::string& name, const std::string& title,
-                const std::string& description, const std::vector<std::string>& types);
+                const std::string& description, const std::vector<std::string>& types,
+                const std::string& prefix = "");
 
 }  // namespace hilda::io

@@ -3,7 +3,7 @@
 #include "run/cosim/grains.hpp"
 
 #include "granular/backend/instruction_set.hpp"
-#include "granular/case/law_names.hpp"
+#include "granular/case/law_list.hpp"
 
 extern "C" const hilda::run::GrainFunctions* hilda_grain_functions()
 {

@@ -80,6 +80,16 @@ TEST_CASE("a key is required if every example was read with it as a required key
     CHECK_THAT(one, !Catch::Contains("a.csv"));
 }
 
+TEST_CASE("the version of a file is a required key", "[io][schema]")
+{
+    const auto read = [](io::ObjectReader& o) {
+        o.note("hilda_case", R"("const": 1)", {"Version.", "1"});
+        o.version("hilda_case");
+    };
+    CHECK(recorded({R"({"hilda_case": 1})"}, read) == expected(R"("required": ["hilda_case"], "properties": {
+        "hilda_case": {"description": "Version.", "const": 1, "examples": [1]}, )"));
+}
+
 TEST_CASE("a default that depends on other keys is not in the schema", "[io][schema]")
 {
     const auto read = [](io::ObjectReader& o) {

@@ -8,19 +8,38 @@ namespace hilda::granular {
 
 FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius)
 {
+    note_clumps(o,
+                "Name of an entry of clumps: the fill consists of clumps. Each one takes the place of a "
+                "sphere around its centre of mass that contains the clump; radius or sizes are those of this "
+                "sphere, and scale the clumps. By default radius is that of the template.");
     FillSpec f;
-    f.low = o.vec3("low"), f.high = o.vec3("high");
+    f.low = o.vec3(
+        "low",
+        {"Lower corner of the box that contains the whole particles [m], in the global frame.", "[0, 0, 0]"});
+    f.high = o.vec3(
+        "high",
+        {"Upper corner of the box [m], in the global frame. The box must be at least one diameter wide.",
+         "[0.03, 0.02, 0.028]"});
     f.sizes = read_radius(o, radius);
     f.radius = f.sizes.largest();
-    const double spacing = o.number("spacing", {}, 1.05);
+    const double spacing = o.number(
+        "spacing",
+        {"Distance of the centres, in diameters of the largest particle [-].", "1.02", R"("minimum": 1)"},
+        1.05);
     if (!(spacing >= 1))
         o.fail("spacing", "spacing must be at least 1 diameter, got " + io::shortest(spacing));
     f.spacing = 2 * f.radius * spacing;
-    f.jitter = o.fraction("jitter", {}, 0);
-    f.max_count = static_cast<std::size_t>(o.count("count", {}, 0));
-    f.seed = static_cast<std::uint64_t>(o.count("seed", {}, 1));
-    f.v = o.vec3("v", Vec3{0, 0, 0});
-    f.random_v = o.not_negative("random_v", {}, 0);
+    f.jitter = o.fraction(
+        "jitter",
+        {"Random displacement of the positions as a fraction of the free distance between neighbours [-].",
+         "0.5"},
+        0);
+    f.max_count = static_cast<std::size_t>(
+        o.count("count", {"Maximum number of particles; 0: as many as fit.", "1000"}, 0));
+    f.seed = static_cast<std::uint64_t>(o.count("seed", about_seed, 1));
+    f.v = o.vec3("v", {"Initial velocity of all particles [m/s], in the global frame.", "[0, 0, -0.5]"},
+                 Vec3{0, 0, 0});
+    f.random_v = o.not_negative("random_v", about_random_v, 0);
     for (const auto& [low, high, axis] :
          {std::tuple{f.low.x, f.high.x, 0u}, {f.low.y, f.high.y, 1u}, {f.low.z, f.high.z, 2u}})
         if (!(high - low >= 2 * f.radius))
@@ -32,10 +51,9 @@ FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius)
 
 FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius)
 {
-    const std::string name = o.one_of("type", io::Registry<FillType>::names());
-    const FillType* const type = io::Registry<FillType>::find(name);
-    FillSpec f = type->read(o, radius);
-    f.type = type;
+    const auto& type = io::read_type<FillType>(o, {"Fill", "type", "Type of the fill."});
+    FillSpec f = type.read(o, radius);
+    f.type = &type;
     return f;
 }
 

@@ -7,7 +7,7 @@
 #include "granular/insertion/sizes.hpp"
 #include "granular/reading/clump_keys.hpp"
 #include "granular/reading/object_reader.hpp"
-#include "io/schema/keyed_schema.hpp"
+#include "io/schema/type_schema.hpp"
 
 #include <functional>
 
@@ -39,7 +39,7 @@ struct FillSpec {
 /// A type of fill. A file registers it by io::Registry<FillType>::add.
 struct FillType {
     std::string name;  ///< value of the key "type"
-    io::KeyedSchema schema;
+    io::TypeSchema schema;
     /// Reads the keys besides type, material and replica. `radius`: default of the radius [m]. Throws
     /// io::InvalidInput.
     FillSpec (*read)(ObjectReader& o, const std::optional<double>& radius);
@@ -53,6 +53,12 @@ struct FillType {
 /// Reads the keys of a box that is filled with spheres, see FillSpec. `radius`: default of the radius [m].
 /// Throws io::InvalidInput.
 FillSpec read_filled_box(ObjectReader& o, const std::optional<double>& radius);
+
+/// The conditions of the schema on several keys of such a box
+inline const std::string rest_of_filled_box =
+    R"("if": {"required": ["clump"]}, "then": {"not": {"anyOf": [{"required": ["material"]}, )"
+    R"({"required": ["attached_to"]}]}}, "else": {"anyOf": [{"required": ["radius"]}, )"
+    R"({"required": ["sizes"]}], "not": {"required": ["orientation"]}})";
 
 /// Reads an entry of `fill`, without material and replica. Throws io::InvalidInput.
 FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius = {});

@@ -77,7 +77,15 @@ Particle particle(const io::CsvRow& row)
 FillSpec read_table(ObjectReader& o, const std::optional<double>&)
 {
     FillSpec f;
-    const std::string file = f.file = o.file("file");
+    const std::string file = f.file = o.file(
+        "file",
+        {"CSV file with the particles. A relative path refers to the working directory of the program. The "
+         "file must be below the folder of the case, unless --allow-paths is given. The first line has the "
+         "column names. Columns x, y, z and radius (m) are required; vx, vy, vz (m/s), omega_x, omega_y, "
+         "omega_z (rad/s), e0, e1, e2, e3 and material (number of the material, counted from 0) are "
+         "optional; others are ignored. The file particles.csv of a run has this format.",
+         R"("out/bed/particles.csv")"});
+    if (o.records_schema()) return f;
     try {
         const std::string text = io::read_file(file, most_bytes);
         f.particles = particles_of_csv(text, file);
@@ -91,24 +99,11 @@ FillSpec read_table(ObjectReader& o, const std::optional<double>&)
     return f;
 }
 
-const bool registered_fill_csv = io::Registry<FillType>::add(
-    {.name = "csv",
-     .schema =
-         {.description = "The particles of a CSV table.",
-          .parts = {"fill_keys"},
-          .keys =
-              {{"file",
-                "CSV file with the particles. A relative path refers to the working directory of the "
-                "program. The file must be below the folder of the case, unless --allow-paths is given. "
-                "The first line has the column names. Columns x, y, z and radius (m) are required; vx, vy, "
-                "vz "
-                "(m/s), omega_x, omega_y, omega_z (rad/s), e0, e1, e2, e3 and material (number of the "
-                "material, "
-                "counted from 0) are optional; others are ignored. The file particles.csv of a run has this "
-                "format.",
-                R"("type": "string", "examples": ["out/bed/particles.csv"])", true}},
-          .example = R"("file": "out/bed/particles.csv")"},
-     .read = read_table});
+const bool registered_fill_csv =
+    io::Registry<FillType>::add({.name = "csv",
+                                 .schema = {.description = "The particles of a CSV table.",
+                                            .examples = {R"("file": "out/bed/particles.csv")"}},
+                                 .read = read_table});
 
 }  // namespace
 

@@ -52,15 +52,15 @@ const std::string example = R"("low": [0, 0, 0], "high": [0.03, 0.02, 0.03], "ra
 const bool registered_fill_lattice =
     io::Registry<FillType>::add({.name = "lattice",
                                  .schema = {.description = "Simple cubic lattice with rows along x.",
-                                            .parts = {"fill_keys", "filled_box"},
-                                            .example = example},
+                                            .examples = {example},
+                                            .rest = rest_of_filled_box},
                                  .read = read_filled_box,
                                  .centres = centres<false>,
                                  .estimated_count = estimated<false>}) &&
     io::Registry<FillType>::add({.name = "hcp",
                                  .schema = {.description = "Hexagonal close-packed arrangement.",
-                                            .parts = {"fill_keys", "filled_box"},
-                                            .example = example},
+                                            .examples = {example},
+                                            .rest = rest_of_filled_box},
                                  .read = read_filled_box,
                                  .centres = centres<true>,
                                  .estimated_count = estimated<true>});

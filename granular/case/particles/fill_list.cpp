@@ -33,7 +33,10 @@ void FillList::read(ObjectReader& o, Case& c, EntryKeys& keys, const WorldOption
     spec.clumps = clumps;
     const bool from_csv = !spec.particles.empty();
     if (from_csv && clumps) o.fail("clump", "clump must not be given together with a table");
-    if (!clumps) spec.material = from_csv && !o.has("material") ? -1 : keys.material(o);
+    if (!clumps)
+        spec.material = from_csv && !o.has("material")
+                            ? -1
+                            : keys.material(o, " With csv it replaces the materials of the table.");
     spec.replica = keys.replica(o);
     spec.attached_to = EntryKeys::attached_to(o, c);
     if (!options.orientation)

@@ -67,10 +67,9 @@ const bool registered_fill_poisson = io::Registry<FillType>::add(
     {.name = "poisson",
      .schema = {.description =
                     "Random positions with a minimum distance (Bridson 2007), sorted from the bottom.",
-                .parts = {"fill_keys", "filled_box"},
-                .example =
-                    R"("low": [0, 0, 0], "high": [0.03, 0.02, 0.028], "radius": 0.001, "least_radius": 8e-4,
-                              "spacing": 1.02)"},
+                .examples = {R"("low": [0, 0, 0], "high": [0.03, 0.02, 0.028], "radius": 0.001,
+                                "least_radius": 8e-4, "spacing": 1.02)"},
+                .rest = rest_of_filled_box},
      .read = read_filled_box,
      .centres = poisson_centres,
      .estimated_count = estimated_poisson});

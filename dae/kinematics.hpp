@@ -21,15 +21,25 @@ public:
     /// Positions follow from Newton's method to 1e-13 m or rad (Eq. 2.2), velocities from (2.8),
     /// accelerations and multipliers from (2.9, 2.17). The multipliers include those of the drivers. The
     /// interval is divided into substeps of at most `substep` [s]. A Taylor expansion of second order gives
-    /// the initial guess of each substep, so that the solution stays on its branch. t may be earlier than
-    /// x.t.
+    /// the initial guess of each substep. A substep is halved until no body turns by more than 0.3 rad in it,
+    /// and until the positions and the velocities that are found are near those that were predicted: the
+    /// solution stays on its branch of the assemblies. t may be earlier than x.t.
+    ///
+    /// Throws lie::NumericalFailure "kinematic_jump" where the motion is not continuous, and that of Newton's
+    /// method where the mechanism cannot move on.
     void move_to(State& x, double t, double substep = 5e-3);
 
     /// The states at x.t + k dt, k = 0, ..., n
     lie::Trajectory run(State x, double dt, long n);
 
 private:
+    void advance(State& x, double t, int halvings);
+    /// Computes the state at the time t from a prediction. Returns the body whose motion is too far from it, or
+    /// an empty string.
+    std::string follow(const State& before, State& x, double t);
+
     const Model& model;
+    const double size;  ///< of the mechanism [m]
     lie::Saddle K;
 };
 

@@ -5,6 +5,7 @@
 #include "dae/kinematics.hpp"
 
 #include "dae/constraints/dp1.hpp"
+#include "dae/constraints/driven_hinge.hpp"
 #include "dae/joints.hpp"
 #include "dae/start.hpp"
 #include "tests/support/mechanisms.hpp"
@@ -305,6 +306,99 @@ TEST_CASE("kinematic analysis runs backwards in time and with any substep", "[da
         CHECK((x.body[b].A - first.body[b].A).norm() < 1e-12);
         CHECK((x.body[b].rddot - first.body[b].rddot).norm() < 1e-10);
     }
+}
+
+namespace {
+
+/// A planar four-bar: crank a, coupler b and rocker c between the pins (0, 0) and (d, 0); the coupler is above
+/// (side 1) or below (-1) the line from its crank pin to the ground pin of the rocker.
+struct FourBar {
+    double a, b, c, d;
+    int side;
+
+    Vec3 crank_pin(double theta) const { return {a * std::cos(theta), a * std::sin(theta), 0}; }
+    /// Closed form: the intersection of two circles
+    Vec3 rocker_pin(double theta) const
+    {
+        const Vec3 B = crank_pin(theta), D(d, 0, 0), e = (D - B).normalized();
+        const double l = (D - B).norm(), along = (l * l + b * b - c * c) / (2 * l);
+        return B + along * e + side * std::sqrt(b * b - along * along) * Vec3(-e.y(), e.x(), 0);
+    }
+
+    /// The crank is driven at the angle f(t).
+    void build(Model& model, State& x, const std::string& f) const
+    {
+        const Vec3 Z = Vec3::UnitZ(), O = Vec3::Zero(), D(d, 0, 0);
+        const double theta = Driver(f).f(0);
+        const Vec3 B = crank_pin(theta), C = rocker_pin(theta);
+        const auto add = [&](const char* name, const Vec3& from, const Vec3& to) {
+            const Vec3 along = to - from;
+            tests::add_body(model, x, name, 1, {0.01, 0.1, 0.1}, 0.5 * (from + to),
+                            lie::exp(std::atan2(along.y(), along.x()) * Z));
+            return Vec3(0.5 * along.norm(), 0, 0);  // from the centre to the end
+        };
+        const Vec3 end_a = add("crank", O, B), end_b = add("coupler", B, C), end_c = add("rocker", D, C);
+        model.constrain("A", revolute(ground, O, Z, 0, -end_a, Z));
+        model.constrain("B", revolute(0, end_a, Z, 1, -end_b, Z));
+        model.constrain("C", spherical(1, end_b, 2, end_c));
+        model.constrain("D", revolute(ground, D, Z, 2, -end_c, Z));
+        model.constrain("driver",
+                        DrivenHinge(ground, Vec3::UnitX(), Vec3::UnitY(), 0, Vec3::UnitX(), Driver(f)));
+    }
+    /// Largest distance of the rocker pin from the closed form at n nodes
+    double error(const std::string& f, double dt, int n) const
+    {
+        Model model;
+        State x;
+        build(model, x, f);
+        dae::start(model, x, {.fix_initial = true});
+        const Driver angle(f);
+        double largest = 0;
+        Kinematics kinematics(model);
+        for (int k = 1; k <= n; ++k) {
+            kinematics.move_to(x, k * dt);
+            const Vec3 pin = x.body[2].r + x.body[2].A * Vec3(0.5 * c, 0, 0);
+            largest = std::max(largest, (pin - rocker_pin(angle.f(x.t))).norm());
+        }
+        return largest;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("kinematic analysis stays on its branch at any speed", "[dae][kinematics]")
+{
+    tests::Random random(5);
+    int tried = 0;
+    for (int k = 0; k < 30; ++k) {
+        // The crank is the shortest link, and rotates fully.
+        FourBar f{random.number(0.05, 0.3), 0, 0, 1, k % 2 == 0 ? 1 : -1};
+        f.b = random.number(0.5, 1.5);
+        f.c = random.number(std::abs(f.b - f.d) + 1.1 * f.a, f.b + f.d - 1.1 * f.a);
+        if (f.c < 1.1 * f.a) continue;
+        ++tried;
+        for (const char* rate : {"20*t", "400*t", "1000*t", "-3000*t", "40*sin(60*t)", "1e5*t^3"}) {
+            CAPTURE(f.a, f.b, f.c, f.side, rate);
+            CHECK(f.error(rate, 1e-2, 10) < 1e-10);
+        }
+    }
+    CHECK(tried > 20);
+}
+
+TEST_CASE("kinematic analysis passes a kink of a driver, and ends at a jump", "[dae][kinematics]")
+{
+    const FourBar f{0.25, 0.9, 0.6, 1, 1};
+    CHECK(f.error("5*abs(t-0.023)", 1e-2, 5) < 1e-10);
+    try {
+        f.error("2*t+0.4*step(t-0.023)", 1e-2, 5);
+        FAIL("a jump of the driver has been passed");
+    } catch (const lie::NumericalFailure& failure) {
+        CHECK(failure.status == "kinematic_jump");
+        CHECK(std::string(failure.what()) == "the motion of body 'crank' is not continuous at t = 0.023 s");
+    }
+    // The rocker as crank cannot pass its dead point.
+    const FourBar dead{0.6, 0.9, 0.25, 1, 1};
+    CHECK_THROWS_AS(dead.error("1.2+20*t", 1e-2, 20), lie::NumericalFailure);
 }
 
 TEST_CASE("kinematic analysis rejects a mechanism with degrees of freedom", "[dae][kinematics]")

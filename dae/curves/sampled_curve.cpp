@@ -20,12 +20,20 @@ void check(const std::vector<double>& t, std::span<const double> f)
         lie::reject("samples", "there must be as many values as times; values", f.size());
     if (t.size() < SampledCurve::least)
         lie::reject("samples", "a curve needs at least 6 samples; their number", t.size());
+    // The matrix of the spline, whose entries are quotients of differences of the times, is singular to
+    // working precision below this.
+    const double nearest = 1e-12 * (t.back() - t.front());
     for (std::size_t k = 0; k < t.size(); ++k) {
         const std::string at = "sample " + std::to_string(k);
         if (!std::isfinite(t[k]) || !std::isfinite(f[k]))
             lie::reject(at, "time and value must be finite", std::isfinite(t[k]) ? f[k] : t[k]);
         if (k > 0 && !(t[k] > t[k - 1]))
             lie::reject(at, "the times must be ascending; after " + std::to_string(t[k - 1]), t[k]);
+        if (k > 0 && std::isfinite(nearest) && !(t[k] - t[k - 1] > nearest))
+            lie::reject(at,
+                        "the times must be more than 1e-12 of the whole record apart, " +
+                            io::shortest(nearest) + " s; after the sample before",
+                        t[k] - t[k - 1]);
     }
 }
 
@@ -52,8 +60,16 @@ SampledCurve::SampledCurve(std::vector<double> t, std::span<const double> f)
     collocation.setFromTriplets(entries.begin(), entries.end());
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(collocation);
     const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(f.data(), n);
+    if (lu.info() != Eigen::Success)
+        lie::reject("samples", "their times have no spline; " + lu.lastErrorMessage() + "; number of samples",
+                    n);
     Eigen::VectorXd points = lu.solve(values);
     points += lu.solve(values - collocation * points);
+    const double residual = (values - collocation * points).lpNorm<Eigen::Infinity>();
+    if (!(residual <= 1e-9 * values.lpNorm<Eigen::Infinity>()))
+        lie::reject("samples",
+                    "the spline does not pass through them, because their times are too close; residual",
+                    residual);
     spline = Spline(knots, points.transpose());
 }
 

@@ -27,11 +27,13 @@ using lie::Vec3;
 
 std::string numbers(const Vec3& v) { return fmt::format("{} {} {}", v.x() + 0., v.y() + 0., v.z() + 0.); }
 
-/// Roll, pitch and yaw of A = R_z(yaw) R_y(pitch) R_x(roll)
+/// Roll, pitch and yaw of A = R_z(yaw) R_y(pitch) R_x(roll). Any roll is right at a pitch of ± 90 degrees; the
+/// yaw is that of A R_x(-roll).
 Vec3 roll_pitch_yaw(const Mat3& A)
 {
-    return {std::atan2(A(2, 1), A(2, 2)), std::atan2(-A(2, 0), std::hypot(A(2, 1), A(2, 2))),
-            std::atan2(A(1, 0), A(0, 0))};
+    const double roll = std::atan2(A(2, 1), A(2, 2)), s = std::sin(roll), c = std::cos(roll);
+    return {roll, std::atan2(-A(2, 0), std::hypot(A(2, 1), A(2, 2))),
+            std::atan2(s * A(0, 2) - c * A(0, 1), c * A(1, 1) - s * A(1, 2))};
 }
 
 std::string origin(const Vec3& p, const Mat3& A)

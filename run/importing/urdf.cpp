@@ -64,6 +64,8 @@ public:
         const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
         if (model == nullptr || model->getRoot() == nullptr)
             refuse(messages.text.empty() ? "is no valid URDF file" : messages.text);
+        // The library leaves out an element that it cannot read, such as the inertia of a link.
+        if (!messages.text.empty()) refuse(messages.text);
         to.name = model->getName();
         add(*model->getRoot(), {}, -1, nullptr);
     }

@@ -4,6 +4,7 @@
     HILDA_PROGRAM=build/release/hilda MUJOCO_RUN=build/release/tests/mujoco_run python3 tests/importing/import_test.py
 """
 import csv
+import itertools
 import json
 import os
 import subprocess
@@ -128,6 +129,29 @@ class Import(unittest.TestCase):
         said = run(HILDA, "export", self.written(json.dumps(loop), "loop.json"), "--output", self.path("x.urdf"), expected=3)
         self.assertRegex(said, "constraint '.*' closes a loop; URDF files are trees")
 
+    def test_attitudes(self):
+        """Export and import give every attitude again: the permutations of the axes, which have pitches of 90 degrees, and others."""
+        attitudes = []
+        for order in itertools.permutations(range(3)):
+            for signs in itertools.product((1, -1), repeat=3):
+                A = np.zeros((3, 3))
+                A[range(3), order] = signs
+                attitudes.append(A)
+        random = np.random.default_rng(3)
+        attitudes += [np.linalg.qr(random.normal(size=(3, 3)))[0] for _ in range(40)]
+        attitudes = [A for A in attitudes if np.linalg.det(A) > 0]
+        for tilt in (1e-3, 1e-8, 1e-12, 1e-15):  # beside a pitch of 90 degrees
+            c, s = np.cos(tilt), np.sin(tilt)
+            attitudes.append(np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]))
+        model = {"hilda_model": 1, "name": "turned", "bodies": [
+            {"name": f"b{k}", "mass": 1, "inertia": [1, 2, 2.5], "r": [k, 0, 0], "A": A.tolist()} for k, A in enumerate(attitudes)]}
+        run(HILDA, "export", self.written(json.dumps(model), "turned.json"), "--output", self.path("turned.urdf"))
+        again, _ = self.imported(self.path("turned.urdf"))
+        found = {body["name"]: np.array(body.get("A", np.eye(3))) for body in again["bodies"]}
+        self.assertEqual(len(found), len(attitudes))
+        for k, A in enumerate(attitudes):
+            self.assertLess(np.abs(found[f"b{k}"] - A).max(), 2e-15, A)
+
     def test_loop(self):
         model, text = self.imported(self.written('''<mujoco><worldbody>
             <body name="a" pos="1 0 0"><joint axis="0 1 0"/><geom type="box" size="0.5 0.05 0.05" pos="0.5 0 0"/>
@@ -204,6 +228,12 @@ class Import(unittest.TestCase):
         self.refused("<robot name='r'><link name='world'/>" + link + mimic + "</robot>", "joint 'j': mimic is not supported")
         self.refused("<robot name='r'>" + link + "</robot>", "has no body that moves")
         self.refused("<robot name='r'><link", "model.xml")
+        # The library leaves out an inertia that it cannot read. That of a welded link would be lost.
+        weld = '<joint name="w" type="fixed"><parent link="a"/><child link="b"/></joint>'
+        for right, wrong in (('mass value="1"', 'mass value="2 kg"'), ('mass value="1"', 'mass value="0,5"'), (' ixy="0"', ""),
+                             ('<mass value="1"/>', ""), ('ixx="1"', 'ixx="one"')):
+            self.refused("<robot name='r'><link name='world'/>" + link + joint + f"<link name='b'>{INERTIA.replace(right, wrong)}</link>" +
+                         weld + "</robot>", r"[Ii]nertial.*Link \[b\]")
 
     def test_mjcf_refusals(self):
         def body(inside):

@@ -34,8 +34,8 @@ public:
 
 private:
     void advance(State& x, double t, int halvings);
-    /// Computes the state at the time t from a prediction. Returns the body whose motion is too far from it, or
-    /// an empty string.
+    /// Computes the state at the time t from a prediction. Returns the body whose motion is too far from it,
+    /// or an empty string.
     std::string follow(const State& before, State& x, double t);
 
     const Model& model;

@@ -155,7 +155,7 @@ void Model::prepare(State& x)
     for (ContactConstraint* c : contacts) {
         c->place.alpha = alphas;
         alphas += c->algebraic_variables();
-        if (c->may_be_inactive()) c->place.discrete_state = discrete_states++;
+        c->place.discrete_state = c->may_be_inactive() ? discrete_states++ : -1;
     }
     for (const auto& c : general_constraint) {
         c->place.internal_state = internal_states;

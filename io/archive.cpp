@@ -171,21 +171,21 @@ std::string Archive::bytes()
 
 bool CheckpointFiles::exist() const { return exists(last) || exists(before); }
 
-void CheckpointFiles::save(const std::string& bytes) const
+void CheckpointFiles::save(const std::string& bytes)
 {
     save([&](const Append& append) { append(bytes); });
 }
 
-void CheckpointFiles::save(const std::function<void(const Append&)>& content) const
+void CheckpointFiles::save(const std::function<void(const Append&)>& content)
 {
     const std::string next = last + ".new";
     write_file(next, content);
-    if (exists(last)) rename_file(last, before);
+    if (exists(last) && !last_is_rejected) rename_file(last, before);
     rename_file(next, last);
+    last_is_rejected = false;
 }
 
-bool CheckpointFiles::load(
-    const std::function<void(const std::string& bytes, const std::string& file)>& read) const
+bool CheckpointFiles::load(const std::function<void(const std::string& bytes, const std::string& file)>& read)
 {
     constexpr std::size_t most = std::size_t{1} << 40;
     std::string damage;
@@ -195,6 +195,7 @@ bool CheckpointFiles::load(
             read(read_file(file, most), file);
         } catch (const IoError& error) {
             if (damage.empty()) damage = error.what();
+            last_is_rejected = last_is_rejected || file == last;
             continue;
         }
         if (!damage.empty()) warning(damage + "; the run continues from the one before");
@@ -213,7 +214,8 @@ void CheckpointFiles::save_final(const std::function<void(const Append&)>& conte
 
 void CheckpointFiles::remove_unfinished() const
 {
-    for (const std::string& file : {last, before, last + ".new", last + ".new.tmp"})
+    // In this order: a run that is killed here has its last checkpoint.
+    for (const std::string& file : {before, last, last + ".new", last + ".new.tmp"})
         std::remove(file.c_str());
 }
 

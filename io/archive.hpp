@@ -132,8 +132,8 @@ private:
 };
 
 /// The last checkpoint of an unfinished run, `checkpoint`, and the one before it, `checkpoint.1`. At any time
-/// at least one of them is complete. The checkpoint at the end of a run, from which a longer run can
-/// continue, is `checkpoint.end`.
+/// at least one of them is complete: one that load() has rejected does not replace the one before. The
+/// checkpoint at the end of a run, from which a longer run can continue, is `checkpoint.end`.
 class CheckpointFiles {
 public:
     explicit CheckpointFiles(const std::string& directory)
@@ -143,13 +143,13 @@ public:
     /// Whether there are checkpoints of an unfinished run
     bool exist() const;
     /// Writes `checkpoint`; the previous one becomes checkpoint.1. IoError.
-    void save(const std::string& bytes) const;
+    void save(const std::string& bytes);
     /// The same in pieces; see write_file
-    void save(const std::function<void(const Append&)>& content) const;
+    void save(const std::function<void(const Append&)>& content);
     /// Calls read(bytes, file) for the last checkpoint. If that throws an IoError, calls it for the one
     /// before, then for that at the end of the run that is extended, with a warning. Returns false if there
     /// is no checkpoint. IoError if none can be read.
-    bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read) const;
+    bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read);
     /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
     void save_final(const std::string& bytes) const;
     void save_final(const std::function<void(const Append&)>& content) const;
@@ -160,6 +160,7 @@ public:
 
 private:
     std::string last, before, final;
+    bool last_is_rejected = false;  ///< by load()
 };
 
 }  // namespace hilda::io

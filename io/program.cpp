@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <iterator>
 #include <utility>
@@ -22,9 +23,19 @@ namespace {
 
 volatile std::sig_atomic_t signal_caught = 0;
 
+timespec time_of_signal{};
+
+/// A second signal ends the program, unless it is the same one again at once: timeout(1) sends its signal to
+/// the process and then to the group of the process.
 extern "C" void record_signal(int signal)
 {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const double since = static_cast<double>(now.tv_sec - time_of_signal.tv_sec) +
+                         1e-9 * static_cast<double>(now.tv_nsec - time_of_signal.tv_nsec);
+    if (signal_caught == signal && since < 0.2) return;
     if (signal_caught != 0) _exit(128 + signal);
+    time_of_signal = now;
     signal_caught = signal;
 }
 

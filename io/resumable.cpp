@@ -35,12 +35,14 @@ bool Resumable::prepare()
     if (!read()) return false;
     resumed = options.resume && load();
     check();
-    if (options.resume && !resumed)
+    if (resumed)
+        log(formatted("continues from %s at t = %g s", restored.c_str(), time()));
+    else if (options.resume)
         warn(options.directory + ": has no checkpoint; starting from the initial state");
     lock.create();
     if (!resumed) {
+        std::remove(path(summary_file).c_str());  // before the checkpoint of the end, which it announces
         files.remove();
-        std::remove(path(summary_file).c_str());
         clear();
     }
     begin = saved = Clock::now();
@@ -51,7 +53,7 @@ bool Resumable::load()
 {
     return files.load([&](const std::string& bytes, const std::string& file) {
         restore(bytes, file);
-        log(formatted("continues from %s at t = %g s", file.c_str(), time()));
+        restored = file;
     });
 }
 
@@ -90,19 +92,17 @@ void Resumable::interrupted()
                 '\n');
 }
 
-void Resumable::failed(const NumericalFailure& failure) { report(failure); }
+void Resumable::failed(const NumericalFailure& failure) { io::report(failure); }
 
-// In this order, so that a run that is killed here can be resumed.
 void Resumable::finish()
 {
-    const bool is_complete = code == exit_code::done;
-    if (is_complete && can_be_extended()) {
-        before_save();
-        files.save_final([&](const Append& append) { write(append); });
-    }
+    const bool has_final = code == exit_code::done && can_be_extended();
+    if (has_final) before_save();
     close();
+    if (has_final) files.save_final([&](const Append& append) { write(append); });
     write_file(path(summary_file), summary());
-    if (is_complete) files.remove_unfinished();
+    if (code == exit_code::done) files.remove_unfinished();
+    report();
 }
 
 void Resumable::save()
@@ -123,6 +123,12 @@ void Resumable::warn(const std::string& what)
 {
     if (line) line->clear();
     Verbosity::warn(what);
+}
+
+void Resumable::log(const std::string& what)
+{
+    if (line) line->clear();
+    Verbosity::log(what);
 }
 
 double Resumable::seconds() const { return seconds_of(Clock::now() - begin); }

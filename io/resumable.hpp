@@ -4,14 +4,19 @@
 /// The calls are, in this order:
 ///
 ///     lock the directory
-///     read()                        the input is read and checked
-///     restore()                     with --resume: the last checkpoint, or the one before
-///     check()                       no file has been written up to here
-///     clear()                       not of a resumed run
+///     read()                      the input is read and checked
+///     restore()                   with --resume: the last checkpoint, or the one before
+///     check()                     no file has been written up to here
+///     clear()                     not of a resumed run, after its summary and its checkpoints are removed
 ///     open()
-///     next_step(), ...               checkpoints when they are due, and the progress line
-///     end(), or a last checkpoint   of an interrupted run
-///     close(), summary()            summary.json
+///     next_step(), ...            checkpoints when they are due, and the progress line
+///     end()                       or a last checkpoint of an interrupted run, or failed()
+///     close()                     the outputs are complete
+///     checkpoint.end              of a complete run, for a later end
+///     summary()                   summary.json
+///     report()                    after the checkpoints of the unfinished run are removed
+///
+/// A run that is killed at any of these can be continued, or starts again.
 
 #pragma once
 
@@ -42,10 +47,10 @@ protected:
 
     explicit Resumable(const ResumableOptions& options);
 
-    /// All of it, and returns the exit code. A numerical failure and an interruption are in summary.json;
-    /// other exceptions are thrown on.
+    /// Performs the run and returns the exit code. A numerical failure and an interruption are in
+    /// summary.json; other exceptions are thrown on.
     int execute();
-    /// The parts of execute(), for a caller that commands the steps. Returns whether there is a run: see
+    /// The parts of execute(), for a caller that commands the steps. prepare() returns the result of
     /// read().
     bool prepare();
     void march();
@@ -62,21 +67,28 @@ protected:
     /// Opens the outputs, and does what precedes the first step.
     virtual void open() = 0;
     virtual bool at_end() const = 0;
-    /// Computes a step. False: there was none to compute, or it has been interrupted.
+    /// Computes a step. Returns false, without a step, at the end or if the step was interrupted.
     virtual bool next_step() = 0;
-    /// After the last step
+    /// Is called after the last step.
     virtual void end() = 0;
-    /// After a NumericalFailure of open(), next_step() or end(); reports it.
+    /// Is called after a NumericalFailure of open(), next_step() or end(), and reports it.
     virtual void failed(const NumericalFailure& failure);
     /// Ends the output files.
     virtual void close() = 0;
+    /// The text of summary.json
     virtual std::string summary() = 0;
+    /// Prints the result of a run whose files are complete.
+    virtual void report() {}
 
-    virtual double time() const = 0;  ///< that has been reached [s]
+    virtual double time() const = 0;  ///< of the present state [s]
+    /// Shows the progress.
     virtual void show(ProgressLine& on, Clock::time_point now) const = 0;
+    /// Is called before each checkpoint: synchronises the outputs with the disk. For that of the end it is
+    /// called before close().
     virtual void before_save() {}
     /// Passes the content of a checkpoint on.
     virtual void write(const Append& append) = 0;
+    /// Whether an interrupted run can be continued
     virtual bool can_be_resumed() const { return true; }
     /// Whether a complete run can be continued to a later end
     virtual bool can_be_extended() const { return true; }
@@ -89,13 +101,14 @@ protected:
     /// Records an interruption, with a checkpoint.
     void interrupted();
 
-    /// Removes the progress line, and writes a warning.
+    /// Removes the progress line, and writes a warning, or a line of --verbose.
     void warn(const std::string& what);
+    void log(const std::string& what);
     std::string path(const std::string& file) const { return options.directory + '/' + file; }
-    /// Wall time since the first step [s]
+    /// Wall time [s] since the end of prepare(), or before that since the construction
     double seconds() const;
 
-    const CheckpointFiles files;
+    CheckpointFiles files;
     bool resumed = false;
     std::string status = "ok", message;  ///< message: of a failure
     int code = 0;                        ///< exit code
@@ -104,6 +117,7 @@ protected:
 private:
     const ResumableOptions options;
     OutputLock lock;
+    std::string restored;  ///< name of the checkpoint
     Clock::time_point begin, saved;
 };
 

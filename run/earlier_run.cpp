@@ -35,7 +35,10 @@ EarlierRun::EarlierRun(std::string directory)
 
 void EarlierRun::read(const std::string& bytes, const std::string& of_file)
 {
-    from = from_bytes(bytes, of_file);
+    Checkpoint checkpoint = from_bytes(bytes, of_file);
+    if (checkpoint.settings.count("--interval") == 0)
+        throw io::IoError(of_file + ": the checkpoint is damaged: it has no --interval");
+    from = std::move(checkpoint);
     file = of_file;
 }
 
@@ -67,7 +70,11 @@ RunSettings EarlierRun::settings(const RunIdentity& of) const
 
 void EarlierRun::check_continues(const RunIdentity& by, const RunSettings& of_run) const
 {
-    const RunSettings earlier = with_defaults(from->settings), now = with_defaults(of_run);
+    RunSettings earlier = from->settings;
+    for (const SettingOption& option : setting_options())  // earlier programs recorded them
+        if (!by.scheme.uses_option(option.name)) earlier.erase(option.name);
+    earlier = with_defaults(std::move(earlier));
+    const RunSettings now = with_defaults(of_run);
     if (earlier != now) {
         const std::string model = directory + "/model.json";
         throw io::UsageError(fmt::format(

@@ -16,7 +16,7 @@ struct Description;
 
 namespace hilda::run {
 
-/// --resume in the directory of a run that has ended, without a later end
+/// The run in the directory has ended and cannot be continued, or is not asked to a later end.
 struct RunHasEnded : io::UsageError {
     using UsageError::UsageError;
 };
@@ -37,7 +37,7 @@ public:
 
     /// Reads its checkpoint. io::IoError if it is damaged.
     void read(const std::string& bytes, const std::string& file);
-    /// RunHasEnded if it has ended and has no checkpoint, or was not resumed
+    /// RunHasEnded if it has ended and no checkpoint has been read
     void require_checkpoint() const;
     /// The settings of a run, which may continue this one
     RunSettings settings(const RunIdentity& of) const;

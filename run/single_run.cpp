@@ -261,6 +261,12 @@ std::vector<std::string> SingleRun::files_of_run()
     return all;
 }
 
+double SingleRun::time() const
+{
+    // The simulation is at its start until open() has resumed it.
+    return earlier.from ? std::max(earlier.from->node.t, simulation->state().t) : simulation->state().t;
+}
+
 void SingleRun::show(io::ProgressLine& on, Clock::time_point now) const
 {
     const lie::Statistics s = simulation->statistics();

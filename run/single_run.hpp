@@ -42,7 +42,7 @@ private:
     void close() override;
     std::string summary() override;
 
-    double time() const override { return simulation ? simulation->state().t : earlier.from->node.t; }
+    double time() const override;
     void show(io::ProgressLine& on, Clock::time_point now) const override;
     void before_save() override;
     void write(const io::Append& append) override;

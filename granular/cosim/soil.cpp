@@ -48,6 +48,8 @@ void Soil::open(const std::vector<ToolBody>& bodies, long steps)
             if (j == number[k] || world.all_boundaries()[static_cast<std::size_t>(j)].body == number[k])
                 world.boundary(j).mass = body[k].mass;
     }
+    // Without a checkpoint of the mechanism both sides start again.
+    if (options.resume && steps == 0) options.resume = false, options.force = true;
     run = SteppedRun::open(options, std::move(given), options.resume ? steps : -1);
 }
 

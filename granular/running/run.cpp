@@ -36,10 +36,10 @@ public:
     using Resumable::execute;
 
     /// See SteppedRun::open()
-    void open(long number)
+    void begin_at(long number)
     {
         restored_step = number;
-        prepare();
+        if (!prepare()) throw io::UsageError(o.output + ": its run is complete; --force starts it again");
         open();
     }
     Case& case_of_run() override { return c; }
@@ -74,6 +74,11 @@ private:
     }
     void check() override
     {
+        if (restored_step > 0 && !resumed)
+            throw io::IoError(
+                io::formatted("%s: has no checkpoint of step %ld, from which the mechanism "
+                              "continues; --force starts both again",
+                              o.output.c_str(), restored_step));
         // with --strict the warnings of an earlier part of the run end this one
         if (resumed && !o.strict) known_warnings = c.world->watch().warnings;
         resumed_at = c.world->steps();
@@ -143,8 +148,8 @@ private:
         }
         if (c.stages != nullptr && c.stages->have_no_step_left(*c.world) && earlier.end != steps)
             refuse_end_after_stages(o, c.world->t());
-        if ((n > steps || (n == steps && earlier.end != steps)) && restored_step < 0)
-            refuse_end(o, c, c.world->t());
+        const bool has_other_end = earlier.end != steps || !from.changes.empty();
+        if (restored_step < 0 && (n > steps || (n == steps && has_other_end))) refuse_end(o, c, c.world->t());
         if (before_change) begin_change();
         rows = history().rows(n, interval);
         recorded = written = n;
@@ -331,8 +336,9 @@ private:
     {
         check_state();
         sinks.sync();
+        saved_sinks = sinks.save();
     }
-    void write(const io::Append& append) override { saved_state.write(sinks.save(), append); }
+    void write(const io::Append& append) override { saved_state.write(saved_sinks, append); }
 
     double time() const override { return c.world->t(); }
     void show(io::ProgressLine& on, Clock::time_point now) const override
@@ -356,24 +362,27 @@ private:
     }
     std::string summary() override
     {
+        summary_text = run_summary(o, c, history(),
+                                   {.status = status,
+                                    .message = message,
+                                    .code = code,
+                                    .rows = rows,
+                                    .resumed_at = resumed_at,
+                                    .seconds = wall_seconds,
+                                    .particle_steps = particle_steps,
+                                    .files = sinks.files()})
+                           .text();
+        return summary_text;
+    }
+    void report() override
+    {
         const World& w = *c.world;
-        const std::string text = run_summary(o, c, history(),
-                                             {.status = status,
-                                              .message = message,
-                                              .code = code,
-                                              .rows = rows,
-                                              .resumed_at = resumed_at,
-                                              .seconds = wall_seconds,
-                                              .particle_steps = particle_steps,
-                                              .files = sinks.files()})
-                                     .text();
         if (o.json)
-            std::fputs(text.c_str(), stdout);
+            std::fputs(summary_text.c_str(), stdout);
         else if (code == io::exit_code::done && !o.quiet)
             std::printf("%s: %zu particles to t = %.6g s in %ld steps, %.3g million particle-steps/s; %s\n",
                         c.name.c_str(), w.count(), w.t(), w.steps(), 1e-6 * particle_steps / wall_seconds,
                         o.output.c_str());
-        return text;
     }
 
     const RunOptions o;
@@ -384,6 +393,8 @@ private:
     CaseCheckpoint saved_state;
     const long interval, steps;
     io::Sinks<CaseSetup> sinks;
+    io::Sinks<CaseSetup>::Saved saved_sinks;  ///< for the next checkpoint
+    std::string summary_text;
     long rows = 0;                    ///< of run.csv
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0, restored_step = -1;
@@ -409,7 +420,7 @@ std::unique_ptr<SteppedRun> SteppedRun::open(const RunOptions& options, Continua
 {
     check_directory(options);
     auto opened = std::make_unique<CaseRun>(options, std::move(run), nullptr);
-    opened->open(restore);
+    opened->begin_at(restore);
     return opened;
 }
 

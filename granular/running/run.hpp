@@ -20,7 +20,8 @@ int run(const RunOptions& options, Continuation run, const std::function<Continu
 class SteppedRun {
 public:
     /// Checks the case, inserts its particles, and restores the last checkpoint of a resumed run. `restore`:
-    /// the number of steps of the checkpoint that is to be restored; negative: the last one.
+    /// the number of steps of the checkpoint that is to be restored; negative: the last one. io::IoError if
+    /// there is no such checkpoint.
     static std::unique_ptr<SteppedRun> open(const RunOptions& options, Continuation run, long restore = -1);
     virtual ~SteppedRun() = default;
 

@@ -19,7 +19,7 @@ struct RunEnd {
     int code;                             ///< exit code
     long rows;                            ///< of run.csv
     long resumed_at;                      ///< number of the step; 0: not resumed
-    double seconds, particle_steps;       ///< wall time of the steps [s], and number of them
+    double seconds, particle_steps;       ///< wall time of the steps [s]; sum of their numbers of particles
     std::vector<std::string> files;       ///< written into the directory
 };
 

@@ -27,8 +27,8 @@ using lie::Vec3;
 
 std::string numbers(const Vec3& v) { return fmt::format("{} {} {}", v.x() + 0., v.y() + 0., v.z() + 0.); }
 
-/// Roll, pitch and yaw of A = R_z(yaw) R_y(pitch) R_x(roll). Any roll is right at a pitch of ± 90 degrees; the
-/// yaw is that of A R_x(-roll).
+/// Roll, pitch and yaw of A = R_z(yaw) R_y(pitch) R_x(roll). Any roll is right at a pitch of ± 90 degrees;
+/// the yaw is that of A R_x(-roll).
 Vec3 roll_pitch_yaw(const Mat3& A)
 {
     const double roll = std::atan2(A(2, 1), A(2, 2)), s = std::sin(roll), c = std::cos(roll);

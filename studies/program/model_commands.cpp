@@ -42,8 +42,8 @@ void add_run_options(CLI::App& c, RunArguments& to)
            append(to.integrators, integrators));
     value(c, "--step", "H",
           "step size [s]; " + names_of([](const lie::Scheme& s) { return s.adaptive_form != nullptr; }) +
-              " choose their own without it, and in any case " +
-              names_of([](const lie::Scheme& s) { return s.adaptive; }) + "; default: 1e-3",
+              " choose their own without it; " + names_of([](const lie::Scheme& s) { return s.adaptive; }) +
+              " always do, and refuse it; default: 1e-3",
           assign(o.step, positive_number));
     value(c, "--end", "T", "end time [s]; default: that of the model, with --resume that of the run",
           assign(o.end, nonnegative_number));

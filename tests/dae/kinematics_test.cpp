@@ -310,8 +310,8 @@ TEST_CASE("kinematic analysis runs backwards in time and with any substep", "[da
 
 namespace {
 
-/// A planar four-bar: crank a, coupler b and rocker c between the pins (0, 0) and (d, 0); the coupler is above
-/// (side 1) or below (-1) the line from its crank pin to the ground pin of the rocker.
+/// A planar four-bar: crank a, coupler b and rocker c between the pins (0, 0) and (d, 0); the coupler is
+/// above (side 1) or below (-1) the line from its crank pin to the ground pin of the rocker.
 struct FourBar {
     double a, b, c, d;
     int side;

@@ -89,7 +89,7 @@ TEST_CASE("of two checkpoints the last complete one is read", "[io][archive]")
 {
     const fs::path in = fs::temp_directory_path() / ("hilda-checkpoints-" + std::to_string(getpid()));
     fs::create_directories(in);
-    const io::CheckpointFiles files(in.string());
+    io::CheckpointFiles files(in.string());
     std::string got;
     const auto load = [&] {
         return files.load([&](const std::string& bytes, const std::string& file) {

@@ -81,6 +81,11 @@ private:
         calls += 's';
         return io::Json({{"status", status}, {"message", message}, {"code", code}, {"sum", sum}}).text();
     }
+    void report() override
+    {
+        calls += 'p';
+        CHECK(fs::exists(path("summary.json")));
+    }
     double time() const override { return number; }
     void show(io::ProgressLine& /*on*/, Clock::time_point /*now*/) const override {}
     void before_save() override { output->sync(); }
@@ -126,7 +131,7 @@ TEST_CASE("a complete run leaves its outputs, its summary, and a checkpoint for 
     const Directory d;
     Sum run(d.options(), 10);
     CHECK(run.execute() == 0);
-    CHECK(run.calls == "rkloecs");
+    CHECK(run.calls == "rkloecsp");
     CHECK(d.text("numbers") == ten);
     CHECK(d.text("summary.json").find(R"("sum": 55)") != std::string::npos);
     CHECK(d.text("summary.json").find(R"("status": "ok")") != std::string::npos);
@@ -145,7 +150,7 @@ TEST_CASE("an interrupted run is continued at its step, with the same outputs", 
         };
         CHECK(run.execute() == 128 + SIGTERM);
         CHECK(run.number == 3);
-        CHECK(run.calls == "rklocs");  // without its end
+        CHECK(run.calls == "rklocsp");  // without its end
         CHECK(d.text("summary.json").find(R"("status": "interrupted")") != std::string::npos);
         CHECK(d.has("checkpoint"));
         CHECK_FALSE(d.has("checkpoint.end"));
@@ -154,7 +159,7 @@ TEST_CASE("an interrupted run is continued at its step, with the same outputs", 
     Sum again(d.options(true), 10);
     CHECK(again.execute() == 0);
     CHECK(again.resumed_at == 3);
-    CHECK(again.calls == "rkoecs");
+    CHECK(again.calls == "rkoecsp");
     CHECK(again.sum == 55);
     CHECK(d.text("numbers") == ten);
     CHECK(d.has("checkpoint.end"));
@@ -199,7 +204,11 @@ TEST_CASE("the checkpoint before replaces a damaged one", "[io][resumable]")
         CHECK_THROWS(run.execute());
     }
     io::write_file(d.path / "checkpoint", "x");
+    const std::string good = d.text("checkpoint.1");
     Sum again(d.options(true, 1e-9), 10);
+    again.before_step = [&](int n) {  // the damaged one does not replace the one before
+        if (n == 8) CHECK(d.text("checkpoint.1") == good);
+    };
     CHECK(again.execute() == 0);
     CHECK(again.resumed_at == 6);
     CHECK(again.saves == 3 + 1);  // after 7, 8 and 9, and that of the end
@@ -252,6 +261,6 @@ TEST_CASE("a run that is to be resumed and has no checkpoint starts from the beg
     const Directory d;
     Sum run(d.options(true), 10);
     CHECK(run.execute() == 0);
-    CHECK(run.calls == "rkloecs");
+    CHECK(run.calls == "rkloecsp");
     CHECK(d.text("numbers") == ten);
 }

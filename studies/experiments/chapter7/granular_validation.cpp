@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 #include <map>
 #include <optional>
 
@@ -67,10 +68,10 @@ granular::ValidationProgress kept_by(const StudyContext& study, granular::Valida
         for (const granular::ValidationWarnings& of : of_parts) warnings.include(of);
     };
     if (study.output.empty()) return kept;
-    const io::CheckpointFiles files(study.output);
-    if (!study.options.resume) files.remove();
-    kept.load = [=](const auto& read) { files.load(read); };
-    kept.save = [=](const std::string& bytes) { files.save(bytes); };
+    const auto files = std::make_shared<io::CheckpointFiles>(study.output);  // load and save share it
+    if (!study.options.resume) files->remove();
+    kept.load = [=](const auto& read) { files->load(read); };
+    kept.save = [=](const std::string& bytes) { files->save(bytes); };
     return kept;
 }
 

@@ -253,6 +253,23 @@ def ends_one_by_one(runs, whole):
             got = content(runs, name + "/cut")
             expect(got == expected, f"substeps {substeps}: {[name for name in expected if got.get(name) != expected[name]]} differ")
             shutil.rmtree(cut)
+        # killed between the first checkpoints of the two sides: that of the grains is at their last step
+        shutil.copytree(runs.folder / name / "whole", cut)
+        (cut / "checkpoint.end").unlink()
+        (cut / "grains/checkpoint.end").rename(cut / "grains/checkpoint")
+        for folder in cut, cut / "grains":
+            (folder / "summary.json").unlink()
+        runs.finish(name, "--output", name + "/cut", "--resume")
+        expect(content(runs, name + "/cut") == expected, f"substeps {substeps}: a run that starts again")
+        # the grains have lost their checkpoint
+        (cut / "checkpoint.end").rename(cut / "checkpoint")
+        (cut / "grains/checkpoint.end").unlink()
+        for folder in cut, cut / "grains":
+            (folder / "summary.json").unlink()
+        process = runs.start(name, "--output", name + "/cut", "--resume", "--quiet")
+        _, err = process.communicate()
+        expect(process.returncode == 5 and "grains: has no checkpoint of step" in err, f"{process.returncode}: {err}")
+        shutil.rmtree(cut)
 
 
 def ranks(runs):

@@ -86,7 +86,7 @@ TEST_CASE("the last two checkpoints are stored", "[run][checkpoint]")
 {
     const tests::Scratch in;
     const std::string directory = in.path.string();
-    const io::CheckpointFiles files(directory);
+    io::CheckpointFiles files(directory);
     long loaded = 0;
     const auto load = [&] {
         return files.load([&](const std::string& bytes, const std::string& file) {

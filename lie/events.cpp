@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 namespace hilda::lie {
@@ -25,11 +26,26 @@ bool counts(Event::Direction direction, int before, int now)
     return direction == Event::both || (direction == Event::rising) == (before < 0);
 }
 
+/// Sets positions and velocities to those at this share of the time from `from` to `to`, over which they are
+/// linear.
+void interpolate(const State& from, double share, State& to)
+{
+    for (std::size_t b = 0; b < to.body.size(); ++b) {
+        const Motion& begin = from.body[b];
+        Motion& m = to.body[b];
+        m.r = begin.r + share * (m.r - begin.r);
+        m.A = begin.A * exp(Vec3(share * log(begin.A.transpose() * m.A)));
+        m.rdot = begin.rdot + share * (m.rdot - begin.rdot);
+        m.omega_bar = begin.omega_bar + share * (m.omega_bar - begin.omega_bar);
+    }
+}
+
 }  // namespace
 
 EventSearch::~EventSearch() = default;
 
-EventSearch::EventSearch(std::vector<Event> events, Make of) : all(std::move(events)), make(std::move(of))
+EventSearch::EventSearch(std::vector<Event> events, Make of, Values values)
+    : all(std::move(events)), make(std::move(of)), values(std::move(values))
 {
     saved.sign.assign(all.size(), unknown);
     g.assign(all.size(), std::numeric_limits<double>::quiet_NaN());
@@ -42,19 +58,17 @@ bool EventSearch::node(const State& to, const Report& report)
     zeros.clear();
     integrator.reset();
     next_sign = saved.sign;
+    set_values(to);
     for (std::size_t k = 0; k < all.size(); ++k) {
-        const double now = next_g[k] = all[k].value(to);
+        const double now = next_g[k];
         const int sign = sign_of(now);
         if (h > 0 && counts(all[k].direction, saved.sign[k], sign)) {
             if (std::isnan(g[k])) g[k] = all[k].value(saved.node);  // of a resumed run
             zeros.push_back({sign == 0 ? h : locate(all[k], g[k], now, h), k, saved.sign[k] < 0});
         }
-        // A function that is zero at a node has passed through it: the next sign is the opposite one, or the
-        // function touches zero.
-        if (sign == 0 && h > 0 && saved.sign[k] != unknown)
-            next_sign[k] = -saved.sign[k];
-        else if (sign != unknown)
-            next_sign[k] = sign;
+        // A function that is zero at a node passes through zero there or touches it: one event, whichever sign
+        // follows.
+        if (sign != unknown) next_sign[k] = sign;
     }
     std::stable_sort(zeros.begin(), zeros.end(), [](const Zero& a, const Zero& b) { return a.tau < b.tau; });
     states.clear();
@@ -70,6 +84,13 @@ bool EventSearch::node(const State& to, const Report& report)
     if (stop < zeros.size()) return true;
     saved.node = to;
     return false;
+}
+
+/// Sets next_g to the values at a node.
+void EventSearch::set_values(const State& at)
+{
+    if (values) return values(at, next_g);
+    for (std::size_t k = 0; k < all.size(); ++k) next_g[k] = all[k].value(at);
 }
 
 /// Sets x to the state at a zero.
@@ -89,14 +110,18 @@ void EventSearch::set_state_of(const Zero& zero, const State& to, double h)
 /// has its new sign, or is zero
 double EventSearch::locate(const Event& event, double g_begin, double g_end, double h)
 {
-    constexpr int most_trials = 100;  // about ten are needed
     const double tolerance = 4 * std::numeric_limits<double>::epsilon() * (std::abs(saved.node.t) + h);
     Bracket bracket(0, g_begin, h, g_end);
-    for (int k = 0; k < most_trials && bracket.b - bracket.a > tolerance; ++k) {
-        const double tau = bracket.next();
-        set_state(tau, h);
-        const double g_tau = event.value(x);
-        if (bracket.add(tau, g_tau) && g_tau == 0) break;
+    try {
+        narrow(bracket, tolerance, [&](double tau) {
+            set_state(tau, h);
+            return event.value(x);
+        });
+    } catch (const NumericalFailure& failure) {
+        if (failure.status != "event_not_finite") throw;
+        std::ostringstream what;
+        what << "the formula of the event '" << event.name << "' is not a number at t = " << x.t << " s";
+        throw NumericalFailure(failure.status, what.str());
     }
     return bracket.b;
 }
@@ -104,21 +129,23 @@ double EventSearch::locate(const Event& event, double g_begin, double g_end, dou
 /// Sets x to the complete state at this time after the last node.
 void EventSearch::set_state(double tau, double h)
 {
-    // Accelerations follow from differences of velocities over tau.
+    // Accelerations follow from differences of velocities over the partial step.
     constexpr double least = 1e-8;
-    tau = std::max(tau, least * h);
+    const double step = std::max(tau, least * h);
     if (!integrator) integrator = make();
     x = saved.node;
     if (!integrator->chooses_internal_steps()) x.history.resize(0);
-    integrator->step(x, tau);
-    x.t = saved.node.t + tau;
+    integrator->step(x, step);
+    x.t = saved.node.t + step;
     if (!integrator->chooses_internal_steps()) integrator->system().accepted(saved.node, x);
     if (integrator->is_staggered()) {
         after = x;
-        integrator->step(after, tau);
+        integrator->step(after, step);
         integrator->fill_node(x, after);
     }
     x.history.resize(0);
+    if (tau < step) interpolate(saved.node, tau / step, x);
+    x.t = saved.node.t + tau;
 }
 
 }  // namespace hilda::lie

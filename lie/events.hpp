@@ -33,7 +33,8 @@ struct EventFound {
 
 /// Finds the events of a run from node to node: a change of the sign of g between two nodes, and its time by
 /// partial steps from the first of them, to the last digits of t. Two zeros of one function between two nodes
-/// are not seen.
+/// are not seen. A function that is zero at a node has an event there, whether it changes its sign or touches
+/// zero; not at the first node.
 ///
 /// A partial step starts without the history of a multi-step scheme; the state of an event has the local
 /// accuracy of one step. With adaptive steps it is that of an output row at this time.
@@ -42,7 +43,9 @@ public:
     /// `make` constructs an integrator with the scheme and the settings of the run. A new one for each step
     /// with an event makes its digits independent of the steps before.
     using Make = std::function<std::unique_ptr<Integrator>()>;
-    EventSearch(std::vector<Event> events, Make make);
+    /// The values of all functions, where they are computed together; otherwise one by one
+    using Values = std::function<void(const State& x, std::vector<double>& g)>;
+    EventSearch(std::vector<Event> events, Make make, Values values = nullptr);
     ~EventSearch();
 
     using Report = std::function<void(const EventFound&)>;
@@ -76,8 +79,11 @@ private:
     void set_state(double tau, double h);
     void set_state_of(const Zero& zero, const State& to, double h);
 
+    void set_values(const State& at);
+
     const std::vector<Event> all;
     const Make make;
+    const Values values;
     std::unique_ptr<Integrator> integrator;
     std::vector<double> g;  ///< at the last node
     std::vector<double> next_g;

@@ -12,25 +12,22 @@ namespace hilda::reference {
 
 namespace {
 
-// Regula falsi needs about eight evaluations. 100 bisections alone would reduce the bracket by 2^100.
-constexpr int max_trials = 100;
-
 /// Locates the zero of g between (t_a, y_a) with g_a > 0 and (t, y) with g_b ≤ 0. On return t, y is the right
 /// end of the last bracket.
 void locate_zero(Ode& ode, double t_a, const Eigen::VectorXd& y_a, double g_a, double& t, VectorRef& y,
                  double g_b, const Event& g)
 {
+    if (g_b == 0) return;
     lie::Bracket bracket(t_a, g_a, t, g_b);
-    for (int trial = 0; trial < max_trials && g_b != 0; ++trial) {
-        if (bracket.b - bracket.a <=
-            4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(bracket.b), bracket.b - t_a))
-            return;
+    const double tolerance = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t), t - t_a);
+    lie::narrow(bracket, tolerance, [&](double s) {
         Eigen::VectorXd y_m = y_a;
         double t_m = t_a;
-        ode.advance(t_m, y_m, bracket.next());
+        ode.advance(t_m, y_m, s);
         const double g_m = g(t_m, y_m);
-        if (bracket.add(t_m, g_m)) t = t_m, y = y_m, g_b = g_m;
-    }
+        if (g_m <= 0) t = t_m, y = y_m;
+        return g_m;
+    });
 }
 
 }  // namespace

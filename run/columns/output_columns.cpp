@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <unordered_set>
 
 namespace hilda::run {
 
@@ -103,6 +104,7 @@ OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const da
         for (const dae::Quantity& c : sources.back().group->columns) names.push_back(c.name);
     }
     first_output = names.size();
+    std::unordered_set<std::string> known(names.begin(), names.end());
     for (const dae::Output* output : outputs) {
         Part part{.output = output,
                   .count = output->quantities().size(),
@@ -118,7 +120,7 @@ OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const da
                 source.is_used = source.is_used || part.expression->uses(source.first + k);
         for (size_t k = 0; k < part.count; ++k) {
             const std::string& name = columns[names.size() - first_output].name;
-            if (std::find(names.begin(), names.end(), name) != names.end())
+            if (!known.insert(name).second)
                 throw lie::InvalidInput(output->name_place + ": the column '" + name +
                                         "' exists already; give this one another name");
             names.push_back(name);
@@ -135,19 +137,32 @@ void OutputColumns::node(const lie::State& x)
     for (Part& part : parts) part.output->update(x, part.saved.data());
 }
 
-void OutputColumns::values(const lie::State& x, double* out)
+/// Computes the variables of the expressions, and the first outputs.
+void OutputColumns::evaluate(const lie::State& x, size_t count)
 {
     variable[0] = x.t;
     for (const Source& source : sources)
         if (source.is_used) source.group->values(x, variable.data() + source.first);
     double* at = variable.data() + first_output;
-    for (const Part& part : parts) {
+    for (size_t k = 0; k < count; ++k) {
+        const Part& part = parts[k];
         if (part.expression)
             *at = part.expression->value({variable.data(), static_cast<size_t>(at - variable.data())});
         else
             part.output->values(x, part.saved.data(), at);
         at += part.count;
     }
+}
+
+double OutputColumns::expression(const lie::State& x, size_t k, size_t count)
+{
+    evaluate(x, count);
+    return parts[k].expression->value(variable);
+}
+
+void OutputColumns::values(const lie::State& x, double* out)
+{
+    evaluate(x, parts.size());
     std::copy(variable.begin() + static_cast<std::ptrdiff_t>(first_output), variable.end(), out);
 }
 

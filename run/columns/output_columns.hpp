@@ -23,9 +23,12 @@ public:
 
     void node(const lie::State& x) override;
     void values(const lie::State& x, double* out) override;
+    /// The value of expression k of the list, which uses the first `count` outputs of the list only
+    double expression(const lie::State& x, size_t k, size_t count);
     void transfer(io::Archive& a) override;
 
 private:
+    void evaluate(const lie::State& x, size_t count);
     struct Part;  ///< an output with its saved numbers or its compiled expression
 
     /// A group of columns that are variables of expressions

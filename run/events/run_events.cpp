@@ -7,6 +7,8 @@
 #include "lie/schemes.hpp"
 #include "run/recording/simulation_record.hpp"
 
+#include <algorithm>
+
 namespace hilda::run {
 
 namespace {
@@ -42,25 +44,27 @@ std::string why_no_events(const lie::Scheme& scheme, const lie::Integrator& inte
 
 RunEvents::RunEvents(const dae::Description& description, lie::EventSearch::Make make, RunTables& tables)
     : description(description), formulas(*description.model, outputs_and_events(description)),
-      values(formulas.columns.size()), search(functions(), std::move(make)),
+      values(formulas.columns.size()),
+      search(functions(), std::move(make),
+             [this](const lie::State& x, std::vector<double>& g) {
+                 formulas.values(x, values.data());
+                 std::copy(values.end() - static_cast<std::ptrdiff_t>(g.size()), values.end(), g.begin());
+             }),
       bodies(body_columns(*description.model)), table(table_of(*bodies, tables)),
       row(3 + bodies->columns.size())
 {
     for (const dae::Event& event : description.events) counted.push_back({.name = event.value->name});
 }
 
-/// The functions of the events, in the last columns of `formulas`
+/// The functions of the events, which may use the outputs
 std::vector<lie::Event> RunEvents::functions()
 {
     std::vector<lie::Event> all;
-    size_t column = formulas.columns.size() - description.events.size();
+    const size_t outputs = description.outputs.size();
     for (const dae::Event& event : description.events)
         all.push_back({.name = event.value->name,
-                       .value =
-                           [this, column = column++](const lie::State& x) {
-                               formulas.values(x, values.data());
-                               return values[column];
-                           },
+                       .value = [this, k = outputs + all.size(),
+                                 outputs](const lie::State& x) { return formulas.expression(x, k, outputs); },
                        .direction = event.direction,
                        .stops = event.stops});
     return all;

@@ -114,6 +114,34 @@ TEST_CASE("the times of events have the order of the scheme", "[run][events]")
     }
 }
 
+TEST_CASE("events that are flat, steep or jump are at the time of the closed form, and a touch is one event",
+          "[run][events]")
+{
+    const Scratch in;
+    write(in / "flat.json",
+          R"json({"hilda_model": 1, "name": "ball", "end": 1,
+ "bodies": [{"name": "b", "mass": 1, "inertia": [1, 1, 1], "r": [0, 0, 1]}],
+ "events": [{"name": "line", "value": "b.rz"}, {"name": "cube", "value": "b.rz^3"},
+            {"name": "one side", "value": "b.rz*exp(-40*b.rz)"}, {"name": "jump", "value": "if(t-0.5537,1,-1e-9)"},
+            {"name": "touch", "value": "(t-0.75)^2"}, {"name": "node", "value": "t-0.25"},
+            {"name": "near", "value": "t-0.25-1e-13"}]})json");
+    for (const std::vector<std::string>& scheme : {std::vector<std::string>{"--step", "1e-3"},
+                                                   {"--step", "0.25"},
+                                                   {"--integrator", "rA-dop853", "--interval", "0.25"}}) {
+        CAPTURE(scheme.back());
+        const Ended run = call(in, with({"run", "flat.json", "--force", "--output", "o"}, scheme));
+        CAPTURE(run.err);
+        REQUIRE(run.code == 0);
+        const double fall = std::sqrt(2 / 9.81),
+                     expected[] = {fall, fall, fall, 0.5537, 0.75, 0.25, 0.25 + 1e-13};
+        const auto rows = events(in / "o");
+        CHECK(rows.size() == std::size(expected));
+        for (const CsvRow& row : rows)
+            CHECK(number(row, "t") ==
+                  Approx(expected[static_cast<size_t>(number(row, "event"))]).margin(2e-15));
+    }
+}
+
 TEST_CASE("directions select zeros; a resumed run has the events of an uninterrupted one", "[run][events]")
 {
     const Scratch in;

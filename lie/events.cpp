@@ -26,8 +26,8 @@ bool counts(Event::Direction direction, int before, int now)
     return direction == Event::both || (direction == Event::rising) == (before < 0);
 }
 
-/// Sets positions and velocities to those at this share of the time from `from` to `to`, over which they are
-/// linear.
+/// Sets positions and velocities to those at this share of the time from `from` to `to`, over which they
+/// are linear.
 void interpolate(const State& from, double share, State& to)
 {
     for (std::size_t b = 0; b < to.body.size(); ++b) {
@@ -66,8 +66,8 @@ bool EventSearch::node(const State& to, const Report& report)
             if (std::isnan(g[k])) g[k] = all[k].value(saved.node);  // of a resumed run
             zeros.push_back({sign == 0 ? h : locate(all[k], g[k], now, h), k, saved.sign[k] < 0});
         }
-        // A function that is zero at a node passes through zero there or touches it: one event, whichever sign
-        // follows.
+        // A function that is zero at a node passes through zero there or touches it: one event, whichever
+        // sign follows.
         if (sign != unknown) next_sign[k] = sign;
     }
     std::stable_sort(zeros.begin(), zeros.end(), [](const Zero& a, const Zero& b) { return a.tau < b.tau; });

@@ -66,10 +66,19 @@ void handle(void (*handler)(int))
     }
 }
 
+/// Opens the standard descriptors that are closed. Otherwise a file or a pipe would have the number of one of
+/// them, and receive the messages. Output to them fails as before.
+void open_standard_descriptors()
+{
+    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(standard, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) < 0) return;
+}
+
 }  // namespace
 
 int run_program(const std::function<int()>& program)
 {
+    open_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG, and the message names the file
     try {
         const int code = program();
@@ -105,7 +114,14 @@ void OutputLock::create()
 void OutputLock::acquire()
 {
     descriptor = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    if (descriptor < 0) return;
+    // The grains of a co-simulation that has been killed complete their checkpoint before they end.
+    constexpr int trials = 20;
+    constexpr useconds_t between = 50000;  // [us]
+    for (int trial = 1; trial <= trials; ++trial) {
+        if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+        if (trial < trials) usleep(between);
+    }
     close(descriptor);
     descriptor = -1;
     throw IoError(directory + ": another process writes to it; wait for its end, or give another --output");

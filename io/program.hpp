@@ -24,7 +24,7 @@ inline constexpr const char* force_or_resume = "--force overwrites it, --resume 
 /// locks, for example some network file systems, exclude nothing.
 class OutputLock {
 public:
-    /// Locks the directory if it exists. IoError if another process or object holds the lock.
+    /// Locks the directory if it exists. IoError if another process or object holds the lock for a second.
     explicit OutputLock(std::string directory);
     ~OutputLock();
     OutputLock(const OutputLock&) = delete;

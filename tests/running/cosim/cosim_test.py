@@ -194,6 +194,11 @@ def one_result(runs):
     runs.finish("cut", "--output", "cut/pipe", "--transport", "pipe", "--threads", "2")
     pipe = content(runs, "cut/pipe")
     expect(pipe == whole, f"the grains in a process of their own: {[name for name in whole if pipe.get(name) != whole[name]]} differ")
+    for closed in (0,), (0, 1, 2):  # standard descriptors that are closed
+        subprocess.run(["rm", "-rf", str(runs.folder / "cut/closed")], check=True)
+        code = subprocess.run([runs.hilda, "cosim", "cut/cosim.json", "--output", "cut/closed", "--transport", "pipe", "--quiet"], cwd=runs.folder,
+                              preexec_fn=lambda closed=closed: [os.close(number) for number in closed], check=False).returncode
+        expect(code == 0 and content(runs, "cut/closed") == whole, f"closed {closed}: {code}")
     for which, transport in (signal.SIGINT, "in-process"), (signal.SIGKILL, "in-process"), (signal.SIGINT, "pipe"), (signal.SIGKILL, "pipe"):
         parts = 0
         while True:

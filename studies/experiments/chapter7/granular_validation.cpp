@@ -17,8 +17,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <map>
+#include <memory>
 #include <optional>
 
 namespace hilda::studies {

@@ -44,7 +44,7 @@ size_t entries()
 /// Number of the entries that a plug-in can add
 size_t registered_entries()
 {
-    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart, 
+    return entries<lie::Scheme, dae::ConstraintType, dae::ForceType, dae::OutputType, dae::SchemaPart,
                    contact::SurfaceType, contact::NormalLawType, contact::FrictionLaw, Problem,
                    run::SinkType>() +
            studies().size();

@@ -205,8 +205,6 @@ bool CheckpointFiles::load(const std::function<void(const std::string& bytes, co
     return false;
 }
 
-void CheckpointFiles::save_final(const std::string& bytes) const { write_file(final, bytes); }
-
 void CheckpointFiles::save_final(const std::function<void(const Append&)>& content) const
 {
     write_file(final, content);

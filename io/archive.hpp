@@ -151,7 +151,6 @@ public:
     /// is no checkpoint. IoError if none can be read.
     bool load(const std::function<void(const std::string& bytes, const std::string& file)>& read);
     /// Writes `checkpoint.end`. The other checkpoints remain: remove_unfinished(). IoError.
-    void save_final(const std::string& bytes) const;
     void save_final(const std::function<void(const Append&)>& content) const;
     /// Removes the checkpoints of the unfinished run.
     void remove_unfinished() const;

@@ -104,7 +104,7 @@ TEST_CASE("of two checkpoints the last complete one is read", "[io][archive]")
     CHECK((files.exist() && load() && got == "second"));
     files.save("damaged"), files.save("damaged");
     CHECK_THROWS_WITH(load(), Contains("/checkpoint: is damaged"));
-    files.save_final("end");
+    files.save_final([](const io::Append& append) { append("end"); });
     files.save("unfinished");
     CHECK((files.exist() && load() && got == "unfinished"));
     files.remove_unfinished();

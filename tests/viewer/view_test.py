@@ -370,8 +370,8 @@ class Pages(unittest.TestCase):
             return browser.run("return document.getElementById(arguments[0]).textContent", name)
 
         def redrawn(script):
-            frames = browser.run("return viewer.frames")
-            browser.run(script)
+            # Frame count and change in one script: no frame of a page that plays lies between them.
+            frames = browser.run(f"const frames = viewer.frames; {script}; return frames")
             browser.wait(f"viewer.frames > {frames}")
         spacing = browser.run("return viewer.grid.spacing")
         self.assertIn(round(spacing / 10 ** np.floor(np.log10(spacing) + 1e-9), 9), (1, 2, 5))

@@ -4,6 +4,7 @@
 #include "dae/driver.hpp"
 
 #include "dae/curves/sampled_curve.hpp"
+#include "dae/function_of_time.hpp"
 #include "io/json.hpp"
 
 #include <limits>
@@ -24,6 +25,11 @@ Driver::Driver(std::shared_ptr<const SampledCurve> samples) : constant(false), c
 io::Jet Driver::jet(double t) const { return curve ? curve->jet(t) : expression->jet(t); }
 
 double Driver::last_time() const { return curve ? curve->last() : std::numeric_limits<double>::infinity(); }
+
+FunctionOfTime Driver::function_of_time() const
+{
+    return curve ? FunctionOfTime(curve) : FunctionOfTime(*expression);
+}
 
 const std::string& Driver::text() const
 {

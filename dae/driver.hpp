@@ -12,6 +12,7 @@
 
 namespace hilda::dae {
 
+class FunctionOfTime;
 class SampledCurve;
 
 /// A prescribed function of time: a constant, by default 0, an io::Expression in t, or a curve through
@@ -32,6 +33,8 @@ public:
     io::Jet jet(double t) const;
 
     bool is_constant() const { return constant; }
+    /// f with its break points. It must not be constant.
+    FunctionOfTime function_of_time() const;
     /// Last time of the samples of a curve [s]; infinite for an expression
     double last_time() const;
     /// Of the expression; empty for a curve

@@ -5,6 +5,7 @@
 
 #include "dae/body.hpp"
 #include "dae/outputs/quantity.hpp"
+#include "io/expression.hpp"
 #include "lie/loads.hpp"
 
 #include <array>
@@ -33,6 +34,17 @@ public:
     virtual void add(const State& x, lie::Loads& out) const = 0;
     /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
+
+    /// The functions of the state whose zeros are the places where the force has a kink or a jump, such as the
+    /// distance to a stop. Adaptive schemes end a step where one of them changes its sign; without them they
+    /// may step over the place.
+    virtual int switches() const { return 0; }
+    /// Writes their values in the state x; NaN where there is none. The function must not allocate memory.
+    virtual void switching(const State& /*x*/, double* /*out*/) const {}
+    /// The expressions in t on which the force depends. Adaptive schemes end a step where one of them jumps
+    /// or has a kink, and do not step over a pulse.
+    virtual std::vector<io::Expression> functions_of_time() const { return {}; }
+    double start_time = -std::numeric_limits<double>::infinity();  ///< of the run [s], set by the model
 
     /// The quantities that values() computes, for the output
     virtual std::vector<Quantity> quantities() const { return {}; }

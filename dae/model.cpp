@@ -147,6 +147,8 @@ void Model::prepare(State& x)
             r.complement = dp1->complement(at);
         if (r.complement) r.branch = discrete_states++;
     }
+    block_counts_turns = internal_states > 0;
+    set_switches(x.t);
     dropped.clear();
     active.resize(row.size());
     std::iota(active.begin(), active.end(), 0);

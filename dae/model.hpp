@@ -16,6 +16,8 @@
 
 namespace hilda::dae {
 
+class FunctionOfTime;
+
 /// Invalid input of one constraint. what() gives the name of the row and of its bodies.
 class ConstraintError : public lie::InvalidInput {
 public:
@@ -208,6 +210,13 @@ public:
     lie::LoadVariation load_pattern() const override;
     void load_variation(const State& x, lie::LoadVariation& out) const override;
     bool keeps_redundant_rows() const override { return keep_redundant; }
+    int switches() const override { return switching_functions; }
+    void switching(const State& x, double* out) const override;
+    /// Throws NumericalFailure "motion_jumps" if a prescribed motion jumps at the end of the interval.
+    SmoothTime smooth_until(double t, double t_end) const override;
+    /// Throws NumericalFailure "motion_jumps" if a prescribed motion jumps itself.
+    bool velocity_jumps(double t, double t_end) const override;
+    bool counts_turns() const override { return block_counts_turns; }
     double potential_energy(const State& x) const override;
     /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
     /// same torque, and updates the internal states of forces and general constraints.
@@ -222,6 +231,7 @@ private:
     void for_rows_without_alpha(const State& x, F f) const;
     void swap_drivers(State& x) const;
     void update_constraint_states(State& x, bool start) const;
+    void set_switches(double t);
     void set_pattern();
     void add_to_pattern(int row);
     void add_to_pattern(const Constraint& c, int first, int rows);
@@ -243,6 +253,16 @@ private:
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state
+    int switching_functions = 0;                   ///< of all forces
+    bool block_counts_turns = false;
+    struct TimeFunction {
+        std::shared_ptr<const FunctionOfTime> f;
+        int driven = -1;  ///< number of the row that prescribes it; -1 for a load
+    };
+    std::vector<TimeFunction> functions_of_time;
+    size_t driven_functions = 0;  ///< index of the first one that a driver prescribes
+    bool drivers_have_breaks = false;
+    void refuse_jump(const TimeFunction& of, double t) const;
 
     lie::Mass inertia;
     lie::Rows rows_pattern;

@@ -2,8 +2,15 @@
 /// The lie::System interface of a model: its equations, their variations, and the update after an accepted
 /// step.
 #include "dae/constraints/dp1.hpp"
+#include "dae/driver.hpp"
+#include "dae/function_of_time.hpp"
 #include "dae/model.hpp"
 #include "lie/steps/state_numbers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
 
 namespace hilda::dae {
 
@@ -15,6 +22,9 @@ constexpr double swap_threshold = 0.9;
 // The complement must satisfy |Φ| ≤ swap_tolerance where it replaces the driver. It does not if the driven
 // vectors have left their common plane of rotation.
 constexpr double swap_tolerance = 1e-6;
+
+// The sides of a break point are this many rounding errors of the time away from it.
+constexpr double side_distance = 32 * std::numeric_limits<double>::epsilon();
 
 /// The derivatives of the loads of a force by central differences. out.x is x on entry and on return.
 void difference_loads(const Force& f, const State& x, lie::LoadVariation& out, Force::LoadDerivatives& d)
@@ -291,6 +301,85 @@ void Model::update_springs(const State& x, lie::Springs& out) const
             out.gamma[at] = row.gamma;
         }
     }
+}
+
+void Model::switching(const State& x, double* out) const
+{
+    for (const auto& f : force) {
+        f->switching(x, out);
+        out += f->switches();
+    }
+}
+
+/// Collects the switching functions and the functions of time of a run that starts at t.
+void Model::set_switches(double t)
+{
+    switching_functions = 0;
+    functions_of_time.clear();
+    for (const auto& f : force) {
+        f->start_time = t;
+        switching_functions += f->switches();
+        for (const io::Expression& g : f->functions_of_time())
+            functions_of_time.push_back({std::make_shared<FunctionOfTime>(g)});
+    }
+    driven_functions = functions_of_time.size();
+    for (size_t k = 0; k < row.size(); ++k)
+        if (const Driver* driver = row[k].block->prescribed(); driver != nullptr)
+            functions_of_time.push_back(
+                {std::make_shared<FunctionOfTime>(driver->function_of_time()), static_cast<int>(k)});
+    drivers_have_breaks =
+        std::any_of(functions_of_time.begin() + static_cast<std::ptrdiff_t>(driven_functions),
+                    functions_of_time.end(), [](const TimeFunction& of) { return of.f->has_breaks(); });
+}
+
+Model::SmoothTime Model::smooth_until(double t, double t_end) const
+{
+    SmoothTime smooth{t_end};
+    for (const TimeFunction& of : functions_of_time)
+        if (const auto first = of.f->first_break(t, smooth.end); first) smooth = {*first, true};
+    // Values at both sides of a break point
+    const double distance = smooth.is_break ? side_distance * std::abs(smooth.end) : 0;
+    for (const TimeFunction& of : functions_of_time) {
+        const double end = smooth.is_break ? smooth.end - distance : smooth.end;
+        if (!(end > t)) break;
+        if (const double resolved = of.f->resolved_until(t, end); resolved < end) smooth = {resolved};
+    }
+    if (smooth.is_break)
+        for (size_t k = driven_functions; k < functions_of_time.size(); ++k)
+            refuse_jump(functions_of_time[k], smooth.end);
+    return smooth;
+}
+
+/// Throws if a prescribed motion jumps at t.
+void Model::refuse_jump(const TimeFunction& of, double t) const
+{
+    constexpr double rounding = 1e-9;
+    const double distance = side_distance * std::abs(t), before = of.f->value(t - distance),
+                 after = of.f->value(t + distance);
+    if (std::abs(after - before) <= rounding * (1 + std::abs(before))) return;
+    std::ostringstream what;
+    what << name_of(row[of.driven]) << ": the prescribed motion jumps from " << before << " to " << after
+         << " at t = " << t << " s; a motion must be continuous";
+    throw lie::NumericalFailure("motion_jumps", what.str());
+}
+
+bool Model::velocity_jumps(double t, double t_end) const
+{
+    if (!drivers_have_breaks) return false;
+    bool jumps = false;
+    for (size_t k = driven_functions; k < functions_of_time.size(); ++k) {
+        const TimeFunction& of = functions_of_time[k];
+        const Driver& driver = *row[of.driven].block->prescribed();
+        for (double from = t; const auto first = of.f->first_break(from, t_end);) {
+            refuse_jump(of, *first);
+            const double distance = side_distance * std::abs(*first);
+            const double before = driver.fdot(*first - distance), after = driver.fdot(*first + distance);
+            constexpr double rounding = 1e-6;
+            jumps = jumps || !(std::abs(after - before) <= rounding * (1 + std::abs(before)));
+            from = *first + distance;
+        }
+    }
+    return jumps;
 }
 
 double Model::potential_energy(const State& x) const

@@ -15,6 +15,9 @@
 
 namespace hilda::io {
 
+struct Range;
+struct RangeJet;
+
 /// An invalid expression. The message quotes its text, for example
 ///     unknown function 'sine' in "sine(2*t)" at column 1; did you mean 'sin'?
 class ExpressionError : public std::runtime_error {
@@ -65,6 +68,18 @@ public:
 
     /// Value, first and second derivative of an expression in one variable
     Jet jet(double t) const noexcept;
+
+    /// Bounds of the value and of its derivative over an interval, of an expression in one variable
+    RangeJet bounds(const Range& t) const;
+
+    /// The functions whose zeros are the places where the expression is not smooth: the arguments of step, of
+    /// the condition of if, of abs and sqrt, the difference of those of min and max, and those of asin and
+    /// acos minus ±1. With `jumps` only those of step and if. They have the variables of this expression.
+    enum class Switches { all, jumps };
+    std::vector<Expression> switching_functions(Switches which = Switches::all) const;
+    /// The largest parts with this variable and no other one, as expressions in one variable: the whole
+    /// expression if it has no other variable. Parts that consist of the variable alone are left out.
+    std::vector<Expression> parts_in(std::size_t variable) const;
 
     bool is_constant() const { return program.size() == 1 && program[0].op == Op::constant; }
 

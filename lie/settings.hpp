@@ -5,6 +5,7 @@
 
 #include "lie/solver/linear_solver.hpp"
 
+#include <limits>
 #include <map>
 #include <string>
 
@@ -21,7 +22,9 @@ struct Settings {
     double rho_infinity = 0.8;   ///< generalised-α: spectral radius for infinite frequency, from 0 to 1
     bool reparametrise = false;  ///< Euler angles: change to another body frame near their singularity
     double rtol = 1e-10;         ///< adaptive schemes: relative error tolerance of a step
-    double atol = 0;  ///< adaptive schemes: absolute error tolerance [m, m/s; 1, 1/s]; 0: equal to rtol
+    double atol = 0;      ///< adaptive schemes: absolute error tolerance [m, m/s; 1, 1/s]; 0: equal to rtol
+    double max_step = 0;  ///< adaptive schemes: longest internal step [s]; 0: no limit
+    double longest_step() const { return max_step > 0 ? max_step : std::numeric_limits<double>::infinity(); }
     /// Adaptive schemes call this function between their internal steps and throw Interrupted if it returns
     /// true.
     bool (*stop)() = nullptr;

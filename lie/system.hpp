@@ -99,6 +99,29 @@ public:
     /// ∂(F, n̄)/∂(δr, δθ̄, δṙ, δω̄); `out` is a copy of load_pattern()
     virtual void load_variation(const State& /*x*/, LoadVariation& /*out*/) const {}
 
+    /// The functions of the state whose zeros are the places where a load is not smooth, such as the distance
+    /// to a stop. Adaptive schemes end a step where one of them changes its sign. Places that depend on time
+    /// alone belong to smooth_until(). The default is none.
+    virtual int switches() const { return 0; }
+    /// Writes their values in the state x. The function must not allocate memory.
+    virtual void switching(const State& /*x*/, double* /*out*/) const {}
+
+    /// The end of an interval of time
+    struct SmoothTime {
+        double end;             ///< [s]
+        bool is_break = false;  ///< whether a load or a prescribed motion is not smooth there
+    };
+    /// The end of the longest interval from t, at most to t_end, over which loads and prescribed motions are
+    /// smooth functions of time that the steps of an adaptive scheme resolve: the interval has no pulse that
+    /// is short against it.
+    virtual SmoothTime smooth_until(double /*t*/, double t_end) const { return {t_end}; }
+    /// Whether a prescribed velocity jumps in (t, t_end], by which the velocities change by an impulse. Called
+    /// for each step of fixed length.
+    virtual bool velocity_jumps(double /*t*/, double /*t_end*/) const { return false; }
+    /// Whether the state counts revolutions, which are lost if bodies turn relative to each other by half a
+    /// turn or more from one call of accepted() to the next
+    virtual bool counts_turns() const { return false; }
+
     /// Potential energy of the conservative loads [J]
     virtual double potential_energy(const State&) const { return 0; }
     /// Updates the discrete and internal states of `after`, and the multipliers of the rows whose meaning

@@ -100,6 +100,8 @@ void March::refuse_half_turns(const State& before, const State& to) const
 int March::try_step(State& to)
 {
     to = x;
+    // Also for its exception, a prescribed motion that jumps
+    if (!integrator.chooses_internal_steps()) integrator.system().velocity_jumps(x.t, x.t + h);
     const int k = integrator.step(to, h);
     to.t = t_0 + time(n + 1);
     refuse_overflow(integrator.system(), to);

@@ -86,4 +86,14 @@ io::Jet SampledCurve::jet(double time) const
     return {f(0, 0), f(0, 1) / length, f(0, 2) / (length * length)};
 }
 
+io::Range SampledCurve::bounds(double from, double to) const
+{
+    const auto span = [&](double t) {
+        return Spline::Span(std::clamp((t - begin) / (end - begin), 0., 1.), degree, spline.knots());
+    };
+    const Eigen::Index low = span(from) - degree, high = span(to);
+    const auto points = spline.ctrls().segment(low, high - low + 1);
+    return io::Range::around(points.minCoeff(), points.maxCoeff());
+}
+
 }  // namespace hilda::dae

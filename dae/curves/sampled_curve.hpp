@@ -4,6 +4,7 @@
 #pragma once
 
 #include "io/jet.hpp"
+#include "io/range.hpp"
 
 #include <Eigen/Core>
 #include <unsupported/Eigen/Splines>
@@ -30,6 +31,11 @@ public:
     /// two samples continues the polynomial there, since schemes evaluate beyond the end of a step. Throws
     /// lie::NumericalFailure "motion_ended" for other times.
     io::Jet jet(double time) const;
+
+    /// Bounds of the value between two times: the spline is in the convex hull of its control points
+    io::Range bounds(double from, double to) const;
+
+    double largest() const { return spline.ctrls().cwiseAbs().maxCoeff(); }  ///< bound of the magnitude
 
     double first() const { return begin; }  ///< [s]
     double last() const { return end; }     ///< [s]

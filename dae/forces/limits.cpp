@@ -33,6 +33,13 @@ void DistanceLimit::add(const State& x, lie::Loads& out) const
     apply_force(j, -F, s_bar_j, x, out);
 }
 
+void DistanceLimit::switching(const State& x, double* out) const
+{
+    const Vec3 d = d_ij(x);
+    const double l = d.norm();
+    stop.switching(l, l > 0 ? d.dot(d_ijdot(x)) / l : 0, out);
+}
+
 int DistanceLimit::spring_rows(const State& x, SpringRow* out) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);

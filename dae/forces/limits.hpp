@@ -34,6 +34,14 @@ struct Stop {
         if (!(factor > 0)) return {0, 0};
         return {stiffness * factor, stiffness * (q - (q > maximum ? maximum : minimum)) * sign * damping};
     }
+    /// The functions whose zeros are the kinks of the force: the distances to both ends of the range, infinite
+    /// without a limit, and the factor of the damping beyond it
+    static constexpr int switches = 3;
+    void switching(double q, double qdot, double* out) const
+    {
+        out[0] = q - minimum, out[1] = maximum - q;
+        out[2] = is_within(q) ? 1 : 1 + (q > maximum ? damping : -damping) * qdot;
+    }
     bool is_within(double q) const { return !(q > maximum) && !(q < minimum); }
     double potential(double q) const
     {
@@ -54,6 +62,8 @@ public:
     bool is_passive() const override { return true; }
     int max_spring_rows() const override { return 1; }
     int spring_rows(const State& x, SpringRow* out) const override;
+    int switches() const override { return Stop::switches; }
+    void switching(const State& x, double* out) const override;
     /// Infinite within the limits
     double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
     bool load_derivatives(const State& x, LoadDerivatives& out) const override;
@@ -88,6 +98,8 @@ public:
     {
         return stop.derivatives(theta, thetadot);
     }
+    int switches() const override { return Stop::switches; }
+    void switching(const State& x, double* out) const override { stop.switching(angle(x), rate(x), out); }
     /// Infinite within the limits
     double stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const override;
 

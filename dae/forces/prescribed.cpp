@@ -12,7 +12,7 @@ bool PrescribedForce::load_derivatives(const State& x, LoadDerivatives& out) con
 {
     out.setZero();
     const Mat3& A = x.body[body].A;
-    const Vec3 F = value_at(components, x.t);
+    const Vec3 F = components.value(x.t, start_time);
     if (frame == Frame::global)
         out.block<3, 3>(3, 3) = lie::tilde(point_bar) * lie::tilde(A.transpose() * F);
     else
@@ -24,7 +24,7 @@ bool PrescribedTorque::load_derivatives(const State& x, LoadDerivatives& out) co
 {
     out.setZero();
     if (frame == Frame::global)
-        out.block<3, 3>(3, 3) = lie::tilde(x.body[body].A.transpose() * value_at(components, x.t));
+        out.block<3, 3>(3, 3) = lie::tilde(x.body[body].A.transpose() * components.value(x.t, start_time));
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "dae/model_types.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hilda::dae {
@@ -33,13 +34,42 @@ int SpringDamper::spring_rows(const State& x, SpringRow* out) const
 std::pair<double, double> SpringDamper::coefficients(const Stretch& at, double t) const
 {
     if (!law) return {stiffness, damping};
-    const double step_l = 1e-6 * at.l, step_ldot = 1e-6 * std::max(1., std::abs(at.ldot));
-    const auto F = [&](double l, double ldot) {
-        const double variables[] = {l, ldot, t};
-        return law->value(variables);
+    using Variables = std::array<double, 3>;
+    const Variables here = {at.l, at.ldot, t};
+    const auto F = [&](const Variables& x) { return law->value(x, start_time); };
+    // A difference over a jump would be a large slope.
+    const auto is_on_this_side = [&](const Variables& x) {
+        return std::all_of(switching_functions.begin(), switching_functions.end(),
+                           [&](const auto& g) { return (g.value(x) > 0) == (g.value(here) > 0); });
     };
-    return {stiffness + (F(at.l + step_l, at.ldot) - F(at.l - step_l, at.ldot)) / (2 * step_l),
-            damping + (F(at.l, at.ldot + step_ldot) - F(at.l, at.ldot - step_ldot)) / (2 * step_ldot)};
+    const auto slope = [&](size_t k, double step) {
+        Variables less = here, more = here;
+        less[k] -= step, more[k] += step;
+        if (!is_on_this_side(less)) less = here;
+        if (!is_on_this_side(more)) more = here;
+        return less == more ? 0 : (F(more) - F(less)) / (more[k] - less[k]);
+    };
+    return {stiffness + slope(0, 1e-6 * at.l), damping + slope(1, 1e-6 * std::max(1., std::abs(at.ldot)))};
+}
+
+void SpringDamper::set_law(const io::Expression& F)
+{
+    constexpr size_t time = 2;
+    law.emplace(F, time);
+    switching_functions = F.switching_functions();
+    std::erase_if(switching_functions, [](const io::Expression& g) { return !g.uses(0) && !g.uses(1); });
+}
+
+void SpringDamper::switching(const State& x, double* out) const
+{
+    const Stretch at = stretch(x);
+    const double variables[] = {at.l, at.ldot, x.t};
+    for (const io::Expression& g : switching_functions) *out++ = g.value(variables);
+}
+
+std::vector<io::Expression> SpringDamper::functions_of_time() const
+{
+    return law ? law->formula.parts_in(2) : std::vector<io::Expression>();
 }
 
 bool SpringDamper::load_derivatives(const State& x, LoadDerivatives& out) const
@@ -81,7 +111,7 @@ const bool registered_spring_damper = io::Registry<ForceType>::add(
                             R"("-5*ldot^3")"},
                            {}, variables);
              try {
-                 spring.law.emplace(law, variables);
+                 spring.set_law(io::Expression(law, variables));
              } catch (const io::ExpressionError& e) {
                  o.fail("force", e.what());
              }

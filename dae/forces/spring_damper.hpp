@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dae/force.hpp"
-#include "io/expression.hpp"
+#include "dae/function_of_time.hpp"
 #include "lie/check.hpp"
 
 #include <optional>
@@ -25,13 +25,17 @@ public:
     int i, j;
     Vec3 s_bar_i, s_bar_j;
     double stiffness = 0, damping = 0, free_length = 0;  ///< k [N/m], c [N s/m], l_0 [m]
-    std::optional<io::Expression> law;                   ///< F in the variables l, ldot, t
+    std::optional<NodeFormula> law;                      ///< F in the variables l, ldot, t
 
+    /// `F` is an expression in the variables l, ldot, t.
     SpringDamper(int i, const Vec3& s_bar_i, int j, const Vec3& s_bar_j, double stiffness, double damping,
-                 double free_length, std::optional<io::Expression> law = {})
+                 double free_length, const std::optional<io::Expression>& F = {})
         : i(i), j(j), s_bar_i(s_bar_i), s_bar_j(s_bar_j), stiffness(stiffness), damping(damping),
-          free_length(free_length), law(std::move(law))
-    {}
+          free_length(free_length)
+    {
+        if (F) set_law(*F);
+    }
+    void set_law(const io::Expression& F);
 
     void add(const State& x, lie::Loads& out) const override
     {
@@ -48,6 +52,10 @@ public:
     }
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0 && !law; }
+
+    int switches() const override { return static_cast<int>(switching_functions.size()); }
+    void switching(const State& x, double* out) const override;
+    std::vector<io::Expression> functions_of_time() const override;
 
     std::vector<Quantity> quantities() const override
     {
@@ -81,7 +89,7 @@ private:
         Vec3 along;         ///< unit vector from P to Q, global frame
         double l, ldot, f;  ///< [m], [m/s], [N]
     };
-    /// ∂f/∂l and ∂f/∂ldot; those of F by central differences
+    /// ∂f/∂l and ∂f/∂ldot; those of F by differences on the side of `at`
     std::pair<double, double> coefficients(const Stretch& at, double t) const;
     Stretch stretch(const State& x) const
     {
@@ -97,10 +105,12 @@ private:
         double f = stiffness * (l - free_length) + damping * ldot;
         if (law) {
             const double variables[] = {l, ldot, x.t};
-            f += law->value(variables);
+            f += law->value(variables, start_time);
         }
         return {along, l, ldot, f};
     }
+
+    std::vector<io::Expression> switching_functions;  ///< of the law, in l, ldot, t
 };
 
 }  // namespace hilda::dae

@@ -9,17 +9,20 @@
 ///     α_m = (2ρ - 1)/(ρ + 1),   α_f = ρ/(ρ + 1),   γ = ½ + α_f - α_m,   β = (γ + ½)²/4
 ///
 /// Source: Brüls, Cardona, Arnold (2012), Mech. Mach. Theory 48, 121-137. The coefficients are those of Chung
-/// and Hulbert (1993). ρ = ρ∞ in [0, 1] is the spectral radius for infinite frequency
-/// (Settings::rho_infinity).
+/// and Hulbert (1993). ρ = ρ∞ is the spectral radius for infinite frequency (Settings::rho_infinity), from 0 to
+/// 0.99: for ρ = 1 errors of λ of each step are not damped, and λ is of order 1.
 ///
 /// Start: a_0 = v̇_0 + (α_m - α_f) h v̈_0 ≈ v̇(t_0 + (α_m - α_f) h), as in Arnold, Brüls, Cardona (2015),
 /// Numer. Math. 129, 149-179. a_n is then a second-order approximation of v̇(t_n + (α_m - α_f) h) for all n.
 ///
-/// r, A, ṙ, ω̄ and λ are of order 2. The multipliers of the first nodes have an error of O(h) nevertheless:
-/// the velocities of a consistent start satisfy their constraints exactly, those of the smooth numerical
-/// solution up to O(h²) only. The difference is a transient, a polynomial in n times ρⁿ. Example:
-/// double_pendulum_moving, ρ = 0.8: the error of λ reaches 23, 12 and 5.8 N at h = 2e-3, 1e-3 and 5e-4 s. For
-/// ρ = 1 the transient is not damped.
+/// The velocities of the smooth numerical solution satisfy their constraints up to O(h²) only: in the
+/// directions of the rows they differ from the exact ones by
+///
+///     h² (C_q v̈ + (0, ω̄ × ω̄̇ / 12)),   C_q = 1/6 - β - (α_m - α_f)/2
+///
+/// the local error of the positions over h. A start with exact velocities would add a transient to λ, a
+/// polynomial in n times ρⁿ, of O(h). The start therefore adds this difference to v_0, in the directions of
+/// the rows; the same paper.
 ///
 /// The unknowns are z = (x, κ λ) with κ = β h² (1 - α_f)/(1 - α_m). The equations of motion are multiplied by
 /// κ. If no load depends on the state, or if there are algebraic variables or redundant rows, the Newton
@@ -50,6 +53,8 @@
 namespace hilda::lie {
 namespace {
 
+constexpr double most_rho = 0.99;
+
 /// The exact Newton matrix, and the step and the state of its factors
 struct ExactMatrix {
     explicit ExactMatrix(const System& model)
@@ -69,7 +74,9 @@ public:
         : SaddleStep(model, settings), C(model.pattern()), a_n(6 * bodies), a_next(a_n)
     {
         const double rho = settings.rho_infinity;
-        if (!(rho >= 0 && rho <= 1)) reject("rA-genalpha", "rho_infinity must be from 0 to 1", rho);
+        if (!(rho >= 0 && rho <= most_rho))
+            reject("rA-genalpha",
+                   "rho_infinity must be from 0 to 0.99; with 1 the multipliers are of order 1", rho);
         alpha_m = (2 * rho - 1) / (rho + 1);
         alpha_f = rho / (rho + 1);
         gamma = 0.5 + alpha_f - alpha_m;
@@ -81,7 +88,9 @@ public:
     int step(State& x, double h) override
     {
         x_n = x;
-        Attempt attempt(x, x_n);
+        // The start perturbs the velocities of x_n.
+        if (x.history.size() == 0) given = x;
+        Attempt attempt(x, x.history.size() == 0 ? given : x_n);
         if (exact) return step_with_exact_matrix(x, h, attempt);
         if (x_n.history.size() == 0)
             start(h);
@@ -145,8 +154,12 @@ private:
         for (int i = 0; i < bodies; ++i) {
             Eigen::Matrix<double, 6, 1> ahead;
             ahead << x.body[i].rddot, x.body[i].omegadot_bar;
-            a_n.segment<6>(6 * i) += (alpha_m - alpha_f) * (ahead - a_n.segment<6>(6 * i)).eval();
+            e.segment<6>(6 * i) = ahead - a_n.segment<6>(6 * i);
+            a_n.segment<6>(6 * i) += (alpha_m - alpha_f) * e.segment<6>(6 * i);
         }
+        K.set_shift(shift(h));
+        K.assemble(x_n);
+        perturb_velocities(h);
         return k;
     }
 
@@ -245,8 +258,30 @@ private:
         K.solve_in_step(e);
         for (int i = 0; i < bodies; ++i) {
             a_n.segment<6>(6 * i) << x_n.body[i].rddot, x_n.body[i].omegadot_bar;
-            a_n.segment<6>(6 * i) +=
-                (alpha_m - alpha_f) * (e.segment<6>(6 * i) - a_n.segment<6>(6 * i)).eval();
+            e.segment<6>(6 * i) -= a_n.segment<6>(6 * i);
+            a_n.segment<6>(6 * i) += (alpha_m - alpha_f) * e.segment<6>(6 * i);
+        }
+        perturb_velocities(h);
+    }
+
+    /// Adds the part of h² (C_q v̈ + (0, ω̄ × ω̄̇ / 12)) in the directions of the rows to the velocities of x_n.
+    /// e holds h v̈ on entry.
+    void perturb_velocities(double h)
+    {
+        const double C_q = 1. / 6 - beta - 0.5 * (alpha_m - alpha_f);
+        b.resize(e.size());
+        b.setZero();
+        for (int i = 0; i < bodies; ++i) {
+            const Motion& body = x_n.body[i];
+            e.segment<6>(6 * i) *= h * C_q;
+            e.segment<3>(6 * i + 3) += h * h / 12 * body.omega_bar.cross(body.omegadot_bar);
+            b.segment<3>(6 * i) = mass.m[i] * e.segment<3>(6 * i);
+            b.segment<3>(6 * i + 3) = mass.J_bar[i] * e.segment<3>(6 * i + 3);
+        }
+        K.solve_in_step(b);  // the part along the constraints
+        for (int i = 0; i < bodies; ++i) {
+            x_n.body[i].rdot += e.segment<3>(6 * i) - b.segment<3>(6 * i);
+            x_n.body[i].omega_bar += e.segment<3>(6 * i + 3) - b.segment<3>(6 * i + 3);
         }
     }
 
@@ -293,6 +328,7 @@ private:
     double alpha_m = 0, alpha_f = 0, beta = 0, gamma = 0, kappa = 0;
     Eigen::VectorXd a_n, a_next;
     std::unique_ptr<ExactMatrix> exact;  ///< null where the Newton matrix is K
+    State given;                         ///< the start
     State saved;                         ///< workspace: the state of the factors in a history
 };
 

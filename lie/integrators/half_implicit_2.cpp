@@ -14,11 +14,17 @@
 ///
 /// r, A, ṙ, ω̄ are of order 2, λ of order 1. The residual of the velocity constraints, g = C v - ν, satisfies
 /// g_{n+1} + g_n = O(h²). The recursion has the parasitic root -1, which is not damped. The multipliers have
-/// an alternating error of O(h), unless the system starts at rest. rA-half-2-bdf2 is free of it.
+/// an alternating error of O(h), unless the system starts at rest. rA-half-2-bdf2 is free of it. A jump of a
+/// prescribed velocity is a new start.
 
 #include "lie/schemes.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "lie/steps/half_implicit_step.hpp"
+#include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
+
+#include <cmath>
+#include <limits>
 
 namespace hilda::lie {
 namespace {
@@ -34,6 +40,7 @@ private:
     void begin(double h) override
     {
         half_h = 0.5 * h;
+        restart_after_impulse(h);
         for (int i = 0; i < bodies; ++i) A_hat[i] = x_n.body[i].A * exp(half_h * x_n.body[i].omega_bar);
     }
 
@@ -43,6 +50,23 @@ private:
             x.body[i].r = x_n.body[i].r + half_h * x_n.body[i].rdot + 0.5 * z.segment<3>(6 * i);
             x.body[i].A = A_hat[i] * exp(0.5 * z.segment<3>(6 * i + 3));  // Eq. 3.45
         }
+    }
+
+    /// Starts again at x_n if prescribed velocities have jumped since the node before: the velocities receive
+    /// the impulse that the constraints require, and the accelerations before it are forgotten. The
+    /// velocity constraints would otherwise alternate for ever.
+    void restart_after_impulse(double h)
+    {
+        const double after = 64 * std::numeric_limits<double>::epsilon() * std::abs(x_n.t);
+        if (!model.velocity_jumps(x_n.t - h + after, x_n.t + after)) return;
+        const double t = x_n.t;
+        K.set_shift(shift(h));
+        K.assemble(x_n);
+        x_n.t += after;  // behind a jump at the node
+        set_momenta(model, x_n, e);
+        solve_velocities(model, K, x_n, e);
+        solve_accelerations(model, K, x_n, loads, e);
+        x_n.t = t;
     }
 
     std::vector<Mat3> A_hat;  ///< A_n exp(½h ω̄_n)

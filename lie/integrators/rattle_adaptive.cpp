@@ -23,10 +23,11 @@
 
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
-#include "lie/so3.hpp"
+#include "lie/steps/cubic_path.hpp"
 #include "lie/steps/rattle_step.hpp"
 #include "lie/steps/state_numbers.hpp"
 #include "lie/steps/step_control.hpp"
+#include "lie/steps/switch_search.hpp"
 #include "lie/system.hpp"
 
 #include <algorithm>
@@ -46,8 +47,8 @@ constexpr double largest_lag = 2;
 class RattleAdaptive final : public RattleStep {
 public:
     RattleAdaptive(const System& model, const Settings& settings)
-        : RattleStep(model, settings, "rA-rattle-adaptive"), allowed(settings, name), change(12 * bodies),
-          tolerance(12 * bodies)
+        : RattleStep(model, settings, "rA-rattle-adaptive"), allowed(settings, name),
+          longest_step(settings.longest_step()), switches(model), change(12 * bodies), tolerance(12 * bodies)
     {
         K.set_refinements(2);
     }
@@ -117,31 +118,11 @@ private:
         copy(begin, x), copy(begin, x_n);
         const double h = end.t - begin.t;
         K.set_shift(shift(h));
-        const double s = (t - begin.t) / h;
-        for (std::size_t i = 0; i < x.body.size(); ++i) {
-            const Motion &a = begin.body[i], &b = end.body[i];
-            const Vec3 turn = log(a.A.transpose() * b.A),
-                       turn_rate = right_jacobian_inverse(turn) * b.omega_bar;
-            const Hermite r(b.r - a.r, h * a.rdot, h * b.rdot, s),
-                theta(turn, h * a.omega_bar, h * turn_rate, s);
-            x.body[i].r = a.r + r.value, x.body[i].rdot = r.slope / h;
-            x.body[i].A = a.A * exp(theta.value);
-            x.body[i].omega_bar = right_jacobian(theta.value) * theta.slope / h;
-        }
+        set_between(begin, end, (t - begin.t) / h, x);
         x.t = t;
         assemble_once(x);
         finish(x, name);
     }
-    /// The cubic polynomial from 0 to `end`, with the slopes v and w at 0 and 1, at s, and its slope
-    struct Hermite {
-        Vec3 value, slope;
-        Hermite(const Vec3& end, const Vec3& v, const Vec3& w, double s)
-        {
-            const Vec3 c3 = v + w - 2 * end, c2 = 3 * end - 2 * v - w;
-            value = s * (v + s * (c2 + s * c3));
-            slope = v + s * (2 * c2 + 3 * s * c3);
-        }
-    };
 
     int internal_step()
     {
@@ -164,7 +145,18 @@ private:
         const double h = epsilon / density;
         if (!(h > 0 && begin.t + h > begin.t))
             fail("step_too_small", "a step of " + number(h) + " s has no length");
+        if (!(h <= longest_step))
+            fail("step_too_large", "the loads ask for a step of " + number(h) + " s, and --max-step is " +
+                                       number(longest_step) + " s; use a smaller rtol");
+        if (const double until = model.smooth_until(begin.t, begin.t + h).end; until < begin.t + h)
+            fail("step_too_large",
+                 "a load or a prescribed motion has a jump, a kink or a short pulse at t = " + number(until) +
+                     " s, and reversible steps cannot end there; use rA-dp-5, rA-dop853 or rA-radau-5");
         const int k = take_step(end, h, begin.t + h);
+        if (switches.is_needed() && !switches.differ(begin, end) && switches.first(begin, end).found())
+            fail("step_too_large",
+                 "a body passes a threshold of a force, such as a stop, and returns within "
+                 "one step; use a smaller rtol, or rA-dp-5, rA-dop853 or rA-radau-5");
         model.accepted(begin, end);
         return k;
     }
@@ -241,7 +233,7 @@ private:
     /// A body turns by about a quarter of the limit at most, with the present acceleration. At most 1 s.
     double largest_start() const
     {
-        double h = 1;
+        double h = std::min(1., longest_step);
         for (const Motion& body : end.body)
             h = std::min({h, 0.25 * largest_internal_turn / body.omega_bar.norm(),
                           std::sqrt(0.5 * largest_internal_turn / body.omegadot_bar.norm())});
@@ -274,6 +266,8 @@ private:
     }
 
     const Tolerances allowed;
+    const double longest_step;  ///< [s]
+    SwitchSearch switches;
     State begin, end;                           ///< of the last internal step
     double epsilon = 0;                         ///< [s]
     double density = 0;                         ///< ρ of that step; 0 before the first one
@@ -290,7 +284,7 @@ const bool registered_rattle_adaptive = register_scheme<RattleAdaptive>(
      .order_lambda = 2,
      .formulation = "rA",
      .unknowns = "r, h omega, h^2 lambda / 2",
-     .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rtol", "--atol"},
+     .uses = {"--tolerance", "--max-iterations", "--linear-solver", "--rtol", "--atol", "--max-step"},
      .source = "Hairer, Söderlind (2005), with RATTLie",
      .adaptive = true,
      .supports = {Feature::redundant}});

@@ -15,6 +15,11 @@ namespace hilda::lie {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Within this part of a step from its end, a zero of a switching function is at its end.
+constexpr double at_end = 1e-9;
+constexpr int most_located = 50;  // attempts to end a step at a zero
+// The states on both sides of a break point are this many rounding errors of the time away from it.
+constexpr double break_distance = 32 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -23,6 +28,7 @@ void AdaptiveStep<Method>::set_tolerance_limits()
 {
     const Tolerances checked(settings, scheme_name());
     rtol = checked.rtol, atol = checked.atol;
+    largest_turn = model.counts_turns() ? largest_counted_turn : largest_internal_turn;
     for (Eigen::VectorXd* v : {&tolerance, &change, &rate, &next_rate}) v->setZero(12 * bodies);
 }
 
@@ -35,7 +41,7 @@ int AdaptiveStep<Method>::step(State& x, double h)
     copy(x, end), copy(x, x_n), copy(x, node);
     const auto numbers = [this](const auto& block) { transfer(block); };
     if (x.history.size() == 0)
-        start(x);
+        start();
     else
         read_history(x, scheme_name(), numbers);
     const double t = x.t + h;
@@ -63,17 +69,24 @@ void AdaptiveStep<Method>::transfer(const Block& block)
 }
 
 template <class Method>
-void AdaptiveStep<Method>::start(const State& x)
+void AdaptiveStep<Method>::start()
 {
     length = 0;
     has_all_stages = false;
     control = {};
     this->begin_run();
+}
+
+/// Sets the first step from x_n at a start and behind a place where the equations are not smooth: an error
+/// estimate that begins with the step before could be blind for what follows.
+template <class Method>
+void AdaptiveStep<Method>::choose_first_step()
+{
     theta.setZero();
     set_slope(x_n, rate);
     set_tolerances(x_n, x_n, rtol, atol, tolerance);
     for (int i = 0; i < bodies; ++i) {
-        const Motion& body = x.body[i];
+        const Motion& body = x_n.body[i];
         change.segment<12>(12 * i) << body.r, Vec3::Zero(), body.rdot, body.omega_bar;
     }
     const FirstStep first{rms_over(tolerance, change), rms_over(tolerance, rate)};
@@ -97,6 +110,7 @@ template <class Method>
 int AdaptiveStep<Method>::internal_step(double interval)
 {
     copy(end, x_n);
+    if (control.h == 0) choose_first_step();
     this->begin_internal_step();
     if (!K.is_condensed() && K.pivots().body.empty()) assemble_once(x_n);
     if (K.factorizations() != factorizations) {
@@ -105,25 +119,106 @@ int AdaptiveStep<Method>::internal_step(double interval)
     }
     const double smallest =
         std::max(16 * std::numeric_limits<double>::epsilon() * std::abs(x_n.t), 1e-14 * interval);
+    const double begun = length;
+    double to_switch = infinity;  // time from x_n to the zero of a switching function
     bool again = length == 0;
+    int located = 0;
     for (double norm = 0;; again = true) {
-        const double h = std::min(control.h, limit());
+        if (settings.stop != nullptr && settings.stop()) throw Interrupted();
+        const Cut cut = next_end(std::min({control.h, limit(), to_switch}));
+        const double h = cut.h;
+        if (!(h > 0)) {  // x_n is at a break point
+            pass_break(cut.at_break);
+            copy(end, x_n);
+            choose_first_step();
+            continue;
+        }
         const int k = try_step(h, again, norm);
         if (norm <= 1) {
+            if (const double turn = turn_over_limit(h); turn > 2) {
+                control.h = h / turn;
+                restore_pivots(h);
+                continue;
+            }
+            if (const double s = place_of_switch(h, begun, smallest); s < 1 && ++located < most_located) {
+                to_switch = s * h;
+                restore_pivots(h);
+                continue;
+            }
+            if (h == to_switch) pass_switch(std::max(h, begun));
+            if (cut.at_break > 0) pass_break(cut.at_break);
             length = h;
             has_all_stages = false;
             control.accept(h, norm, this->control_order());
             control.h = std::min(control.h, h * this->most_growth());
+            if (h == to_switch || cut.at_break > 0) control = {};
             return k;
         }
         if (!(h > smallest)) fail(h, norm);
-        if (K.factorizations() != factorizations) {
-            this->choose_pivots(pivots_before.body.empty() ? x_n : pivots_before, h);
-            factorizations = K.factorizations();
-        }
+        restore_pivots(h);
         control.reject(h, norm, this->control_order());
-        if (settings.stop != nullptr && settings.stop()) throw Interrupted();
     }
+}
+
+template <class Method>
+void AdaptiveStep<Method>::restore_pivots(double h)
+{
+    if (K.factorizations() == factorizations) return;
+    this->choose_pivots(pivots_before.body.empty() ? x_n : pivots_before, h);
+    factorizations = K.factorizations();
+}
+
+template <class Method>
+auto AdaptiveStep<Method>::next_end(double h) const -> Cut
+{
+    const double t_end = x_n.t + h;
+    const System::SmoothTime smooth = model.smooth_until(x_n.t, t_end);
+    if (!smooth.is_break) return {smooth.end < t_end ? smooth.end - x_n.t : h};
+    const double distance = break_distance * std::abs(smooth.end);
+    return {std::max(0., smooth.end - distance - x_n.t), smooth.end};
+}
+
+template <class Method>
+void AdaptiveStep<Method>::pass_break(double t)
+{
+    end.t = t + break_distance * std::abs(t);
+    assemble_once(end);
+    this->finish(end, scheme_name());
+}
+
+template <class Method>
+double AdaptiveStep<Method>::place_of_switch(double h, double length_before, double smallest)
+{
+    if (!switches.is_needed()) return 1;
+    const SwitchSearch::Crossing crossing = switches.first(x_n, end, at_end * length_before / h);
+    return crossing.s * h > smallest && crossing.s < 1 - at_end ? crossing.s : 1;
+}
+
+template <class Method>
+void AdaptiveStep<Method>::pass_switch(double longest)
+{
+    if (switches.differ(x_n, end)) return;
+    for (double d = 1e-15 * longest; d < 10 * at_end * longest; d *= 4) {
+        copy(end, node);
+        for (Motion& body : node.body) {
+            body.r += d * body.rdot, body.A = body.A * exp(d * body.omega_bar);
+            body.rdot += d * body.rddot, body.omega_bar += d * body.omegadot_bar;
+        }
+        node.t += d;
+        if (!switches.differ(x_n, node)) continue;
+        copy(node, end);
+        assemble_once(end);
+        this->finish(end, scheme_name());
+        return;
+    }
+}
+
+template <class Method>
+double AdaptiveStep<Method>::turn_over_limit(double h) const
+{
+    double fastest = 0;
+    for (const Motion& body : end.body) fastest = std::max(fastest, body.omega_bar.squaredNorm());
+    return h * std::sqrt(fastest) / largest_turn;
 }
 
 template <class Method>
@@ -167,7 +262,7 @@ double AdaptiveStep<Method>::limit() const
 {
     double fastest = 0;
     for (const Motion& body : x_n.body) fastest = std::max(fastest, body.omega_bar.squaredNorm());
-    return largest_internal_turn / std::sqrt(fastest);
+    return std::min(largest_turn / std::sqrt(fastest), settings.longest_step());
 }
 
 template <class Method>

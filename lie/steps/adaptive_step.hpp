@@ -7,6 +7,7 @@
 #include "lie/steps/radau_step.hpp"
 #include "lie/steps/runge_kutta_step.hpp"
 #include "lie/steps/step_control.hpp"
+#include "lie/steps/switch_search.hpp"
 
 #include <memory>
 #include <string>
@@ -23,10 +24,16 @@ namespace hilda::lie {
 /// velocities of a node inside the internal step are projected onto the constraints; accelerations and
 /// multipliers are those of the saddle system at the node.
 ///
-/// No body turns by more than 2 rad in an internal step at its initial angular velocity. A step is repeated
-/// with a smaller length if its error estimate exceeds the tolerance, or if it fails. The pivots of the
-/// linear solver are then those of its first attempt, so that the rejected attempt has no effect on the
-/// digits.
+/// No body turns by more than 2 rad in an internal step at its initial angular velocity, or 1 rad if the
+/// system counts revolutions. A step is repeated with a smaller length if its error estimate exceeds the
+/// tolerance, if it fails, or if its end turns faster than twice that limit. The pivots of the linear solver
+/// are then those of its first attempt, so that the rejected attempt has no effect on the digits.
+///
+/// A step ends where a load or a prescribed motion is not smooth: at the break points of time
+/// (System::smooth_until) and at the zeros of switching functions (System::switching), which are located on
+/// the step and hit from the side on which it began. The state is then moved to the other side, over a time
+/// of rounding errors; prescribed velocities that jump there change the velocities by an impulse. The next
+/// step has the length of a start.
 template <class Method>
 class AdaptiveStep final : public Method {
 public:
@@ -34,7 +41,7 @@ public:
     /// not in [1e-14, 0.1].
     template <class... More>
     AdaptiveStep(const System& model, const Settings& settings, const More&... more)
-        : Method(model, settings, more...)
+        : Method(model, settings, more...), switches(model)
     {
         set_tolerance_limits();
     }
@@ -52,19 +59,39 @@ private:
         Method::settings, Method::theta, Method::unreached, Method::x_n;
 
     void set_tolerance_limits();
-    void start(const State& x);
+    void start();
+    void choose_first_step();
     int internal_step(double interval);
     /// One attempt from x_n to `end`. Sets the norm of its error estimate; infinite if it failed.
     int try_step(double h, bool again, double& norm);
     void set_node(State& x, double t);
     /// Largest length of a step from x_n [s]
     double limit() const;
+    /// Turn of a body in the last step at the angular velocity of its end, over that of limit()
+    double turn_over_limit(double h) const;
+    /// The length of a step of at most h [s]: to a break point of time, if there is one; otherwise at_break
+    /// is 0
+    struct Cut {
+        double h, at_break = 0;
+    };
+    Cut next_end(double h) const;
+    /// Moves `end`, which lies before a break point of time, to its other side.
+    void pass_break(double t);
+    /// The place, from 0 to 1, before the first zero of a switching function in the last step; 1 if there is
+    /// none, or if it is at an end of the step
+    double place_of_switch(double h, double length_before, double smallest);
+    /// Moves `end`, which lies before a zero of a switching function, to its other side. `longest` is the
+    /// longer one of the last two steps.
+    void pass_switch(double longest);
+    /// Restores the pivots of the first attempt.
+    void restore_pivots(double h);
     [[noreturn]] void fail(double h, double norm) const;
     /// Calls block(numbers, count) for the numbers that continue the steps.
     template <class Block>
     void transfer(const Block& block);
 
-    double rtol = 0, atol = 0;
+    double rtol = 0, atol = 0, largest_turn = 0;
+    SwitchSearch switches;
     State end;          ///< of the last internal step, which starts at x_n
     double length = 0;  ///< of that step [s]; 0 at a start
     bool has_all_stages = false;
@@ -87,7 +114,7 @@ bool register_with_adaptive_steps(Scheme scheme)
     Scheme adaptive = scheme;
     adaptive.adaptive = true;
     adaptive.supports = adaptive.supports.without({Feature::history});
-    adaptive.uses.insert(adaptive.uses.end(), {"--rtol", "--atol"});
+    adaptive.uses.insert(adaptive.uses.end(), {"--rtol", "--atol", "--max-step"});
     adaptive.construct = [](const System& system, const Settings& settings) -> std::unique_ptr<Integrator> {
         return std::make_unique<AdaptiveStep<Method>>(system, settings, more()...);
     };

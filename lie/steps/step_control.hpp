@@ -11,6 +11,8 @@
 namespace hilda::lie {
 
 constexpr double largest_internal_turn = 2;  ///< of a body in an internal step [rad]; J_r is singular at 2π
+/// The same where revolutions are counted: two bodies turn relative to each other by less than 3/8 of a turn.
+constexpr double largest_counted_turn = 1;
 
 /// Whether internal steps make progress: a number of them has to cover a fraction of the distance h of two
 /// nodes.
@@ -50,7 +52,7 @@ struct Tolerances {
 /// rejected step changes `h` only. The step after it depends on the steps that were accepted, not on those
 /// that were rejected.
 struct StepControl {
-    double h = 0;              ///< length of the next step [s]
+    double h = 0;              ///< length of the next step [s]; 0 before the first one and at a new start
     double last_error = 1e-4;  ///< err of the last accepted step, at least 1e-4
 
     void accept(double step, double error, int q);

@@ -36,7 +36,7 @@ bool register_ida(const std::string& name, const std::string& unknowns, const st
          .order_lambda = 5,
          .formulation = "rp",
          .unknowns = unknowns,
-         .uses = {"--rtol", "--atol"},
+         .uses = {"--rtol", "--atol", "--max-step"},
          .source = "SUNDIALS IDA; Fang (2022), Eq. 2.23",
          .adaptive = true,
          .resumes = false,

@@ -5,6 +5,8 @@
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/projection.hpp"
+#include "lie/steps/step_control.hpp"
+#include "lie/steps/switch_search.hpp"
 
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
@@ -20,6 +22,10 @@
 namespace hilda::reference {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// The states on both sides of a break point are this many rounding errors of the time away from it.
+constexpr double break_distance = 32 * std::numeric_limits<double>::epsilon();
 
 // Limits of the internal steps between two nodes. IDA has failed after max_steps, and also if check_interval
 // steps cover less than the fraction min_progress of the distance between the nodes.
@@ -96,6 +102,7 @@ class IdaSolver::Ida {
 public:
     Ida(const lie::System& system, const lie::State& start, const lie::Settings& settings, RpForm form)
         : equations(system, start, form), system(system), K(system), stop(settings.stop),
+          longest_step(settings.longest_step()), counts_turns(system.counts_turns()), switches(system),
           rtol(std::max(min_tolerance, step_fraction * settings.rtol)),
           atol(settings.atol > 0 ? std::max(min_tolerance, step_fraction * settings.atol) : rtol),
           context(new_context()), y(new_vector()), ydot(new_vector()), tolerance(new_vector()),
@@ -125,6 +132,7 @@ public:
         for (long n = 1; t < t_end; ++n) {
             if (stop != nullptr && stop()) throw lie::Interrupted();
             if (to_restart) start(internal, t_end);
+            if (!(t < t_end)) break;  // behind a break point at t_end
             internal_step(t_end);
             if (n % check_interval != 0) continue;
             if (n >= max_steps || t - t_checked < min_progress * (t_end - x.t)) fail_without_progress(n);
@@ -133,7 +141,7 @@ public:
         }
 
         last = x;
-        if (t == t_end) {
+        if (t == t_end || !has_stepped) {  // without a step, t is just behind a break point at t_end
             equations.read(t_end, map(y.get()), last);
         } else {
             check(IDAGetDky(ida_memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
@@ -204,6 +212,7 @@ private:
         lie::State consistent = x;
         lie::project_positions(system, K, consistent);
         lie::project_velocities(system, K, consistent);
+        refuse_infinite_load(consistent);
         lie::solve_accelerations(system, K, consistent);
         equations.write(consistent, map(y.get()), map(ydot.get()));
         internal = consistent;
@@ -215,7 +224,25 @@ private:
         } else {
             set_up(consistent);
         }
-        check(IDASetInitStep(ida_memory.get(), first_step(t_end - t)), "IDASetInitStep");
+        const double first = std::min({first_step(t_end > t ? t_end - t : infinity), longest_step,
+                                       std::exchange(first_step_limit, infinity)});
+        check(IDASetInitStep(ida_memory.get(), first), "IDASetInitStep");
+        first_step_taken = first;
+        before = consistent;
+        at_break = 0;
+        has_stepped = false;
+    }
+
+    void refuse_infinite_load(const lie::State& x) const
+    {
+        lie::Loads load(system.bodies());
+        system.loads(x, load);
+        for (int b = 0; b < system.bodies(); ++b)
+            for (const bool turns : {false, true})
+                if (!(turns ? load.n_bar[b] : load.F[b]).allFinite())
+                    throw lie::NonFinite("a load is not finite at t = " + number(x.t) +
+                                         " s: " + (turns ? "rotation" : "translation") + " of body '" +
+                                         system.body_name(b) + "'");
     }
 
     void set_up(const lie::State& consistent)
@@ -250,6 +277,7 @@ private:
               "IDASetNonlinConvCoef");
         check(IDASetLinearSolver(ida_memory.get(), linear.get(), matrix.get()), "IDASetLinearSolver");
         check(IDASetJacFn(ida_memory.get(), jacobian), "IDASetJacFn");
+        if (longest_step < infinity) check(IDASetMaxStep(ida_memory.get(), longest_step), "IDASetMaxStep");
         // The pattern is symmetric and irreducible. COLAMD, the default of SUNDIALS, produces twice the
         // fill-in of AMD.
         constexpr int amd = 0;
@@ -288,13 +316,92 @@ private:
         return std::min({0.5 / std::sqrt(std::max(norm, 1e-300)), 1e-3, h});
     }
 
+    /// Sets the time that the next step must not pass, if it would: the step resolves the functions of time in
+    /// the system and ends before their break points, and bodies turn by a limited angle where turns are
+    /// counted.
+    void limit_step()
+    {
+        double next = first_step_taken;
+        if (has_stepped) IDAGetCurrentStep(ida_memory.get(), &next);
+        double fastest = 0;
+        if (counts_turns)
+            for (const lie::Motion& body : before.body)
+                fastest = std::max(fastest, body.omega_bar.squaredNorm());
+        const double limit = std::min({next, longest_step, lie::largest_counted_turn / std::sqrt(fastest)});
+        const lie::System::SmoothTime smooth = system.smooth_until(t, t + limit);
+        at_break = smooth.is_break ? smooth.end : 0;
+        const double end = smooth.end - break_distance * std::abs(at_break);
+        // IDA may be beyond t by rounding errors.
+        is_at_break = at_break > 0 && !(end - t > break_distance * std::abs(t));
+        if (end < t + next && !is_at_break) check(IDASetStopTime(ida_memory.get(), end), "IDASetStopTime");
+    }
+
+    /// Restarts behind a break point of time, with the state that IDA has reached before it.
+    void pass_break()
+    {
+        equations.read(t, map(y.get()), internal);
+        internal.t = at_break + break_distance * std::abs(at_break);
+        at_break = 0;
+        to_restart = true;
+    }
+
+    /// Returns to the zero of a switching function in the last step, from where IDA restarts. Whether there is
+    /// one.
+    bool return_to_switch()
+    {
+        equations.read(t, map(y.get()), after);
+        const double from = before.t, h = t - from;
+        const auto path = [&](double s, lie::State& x) {
+            check(IDAGetDky(ida_memory.get(), from + s * h, 0, at_node.get()), "IDAGetDky");
+            equations.read(from + s * h, map(at_node.get()), x);
+        };
+        constexpr double at_begin = 1e-9;
+        const lie::SwitchSearch::Crossing crossing = switches.first(after, path, at_begin * last_length / h);
+        if (!crossing.found()) return false;
+        path(crossing.after, internal);
+        t = internal.t;
+        return to_restart = true;
+    }
+
+    /// Restarts from the beginning of the last step with a shorter one if bodies have turned too far for the
+    /// count of their turns.
+    bool repeat_shorter()
+    {
+        double fastest = 0;
+        for (const lie::Motion& body : after.body) fastest = std::max(fastest, body.omega_bar.squaredNorm());
+        const double h = t - before.t, turn = h * std::sqrt(fastest);
+        if (!(turn > 2 * lie::largest_counted_turn)) return false;
+        internal = before;
+        t = before.t;
+        first_step_limit = h * lie::largest_counted_turn / turn;
+        return to_restart = true;
+    }
+
     void internal_step(double t_end)
     {
+        limit_step();
+        const bool follows = counts_turns || switches.is_needed();
+        if (is_at_break) return pass_break();
         const int code = IDASolve(ida_memory.get(), t_end, &t, y.get(), ydot.get(), IDA_ONE_STEP);
         if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
         if (code < 0 && !nonfinite.empty()) throw lie::NonFinite(nonfinite);
         check(code, "IDASolve");
+        has_stepped = true;
+        if (follows) {
+            equations.read(t, map(y.get()), after = before);
+            after.t = t;
+            if (counts_turns && repeat_shorter()) return;
+            if (switches.is_needed() && return_to_switch()) return;
+            last_length = t - before.t;
+        }
         if (equations.form != RpForm::ggl && system.rows() > 0) watch_rank();
+        update_internal_states();
+        if (follows) equations.read(t, map(y.get()), before = internal);
+        if (at_break > 0 && code == IDA_TSTOP_RETURN) pass_break();
+    }
+
+    void update_internal_states()
+    {
         if (internal.discrete_state.empty() && internal.internal_state.empty()) return;
         equations.read(t, map(y.get()), internal);
         const lie::State& now = updated_internal_state(internal);
@@ -408,6 +515,9 @@ private:
 
     lie::Saddle K;
     bool (*const stop)();
+    const double longest_step;
+    const bool counts_turns;
+    lie::SwitchSearch switches;
     const double rtol, atol;
 
     Owned<SUNContext, free_context> context;
@@ -422,6 +532,12 @@ private:
     bool has_last = false;  // whether `last` is valid
     lie::State
         internal;  // state at the end of the last internal step; updated only if there are discrete states
+    lie::State before, after;  // the ends of the last internal step, if it is followed
+    double at_break = 0;       // break point of time at the end of the next step; 0: none
+    double last_length = 0;    // of the last internal step [s]
+    double first_step_limit = infinity, first_step_taken = 0;  // [s]
+    bool is_at_break = false;                                  // t is at a break point
+    bool has_stepped = false;                                  // since the last start
     bool to_restart = false;  // restart from `internal` after the nodes before it have been interpolated
     lie::State updated;
     // For watch_rank(). A matrix of its own, because the pivots of K affect the last digits of a run.

@@ -73,6 +73,11 @@ std::vector<SettingOption> common_options()
     all.back().get = [](const lie::Settings& s) {
         return s.atol > 0 && s.atol != s.rtol ? io::Json(s.atol) : io::Json("as rtol");
     };
+    all.push_back(option_of(&lie::Settings::max_step, "--max-step", "H",
+                            "longest step of adaptive steps [s]; default: no limit", io::positive_number));
+    all.back().get = [](const lie::Settings& s) {
+        return s.max_step > 0 ? io::Json(s.max_step) : io::Json("no limit");
+    };
     return all;
 }
 

@@ -186,7 +186,7 @@ TEST_CASE("each type of force is read", "[dae][model_file]")
     CHECK(spring.damping == 1);
     CHECK(spring.free_length == 0.5);
     REQUIRE(spring.law);
-    CHECK(spring.law->value(std::vector<double>{2, 3, 0}) == 6);  // l, ldot, t
+    CHECK(spring.law->formula.value(std::vector<double>{2, 3, 0}) == 6);  // l, ldot, t
 
     const auto& torsion = dynamic_cast<const dae::TorsionSpring&>(*forces[1]);
     CHECK(torsion.name == "torsion-spring-2");
@@ -201,12 +201,12 @@ TEST_CASE("each type of force is read", "[dae][model_file]")
     CHECK(d.model->all_bodies()[wind.body].name == "spherical");  // by its id
     CHECK(wind.point_bar == Vec3(0, 0, 0.1));
     CHECK(wind.frame == dae::Frame::global);
-    CHECK(wind.components[0].value(0) == 1);
-    CHECK(wind.components[1].value(0.5) == 1);
+    CHECK(wind.components.value(0, 0)[0] == 1);
+    CHECK(wind.components.value(0.5, 0)[1] == 1);
 
     const auto& motor = dynamic_cast<const dae::PrescribedTorque&>(*forces[3]);
     CHECK(motor.frame == dae::Frame::body);
-    CHECK(motor.components[2].value(0) == 1);
+    CHECK(motor.components.value(0, 0)[2] == 1);
 }
 
 TEST_CASE("the three forms of an orientation give the same rotation", "[dae][model_file]")

@@ -336,7 +336,7 @@ TEST_CASE("implicit springs without stiffness or damping do not act on a step", 
         GENERATE(std::optional<std::string>(), "-300*(l-1)", "1e4*max(l-1.2,0)", "10*sqrt(l-1)");
     Oscillator o(0, 0, 0.01, 0.1, false);
     SpringDamper spring(ground, 0.3 * Y, 0, O, 0, 0, 1);
-    if (law) spring.law.emplace(*law, std::vector<std::string>{"l", "ldot", "t"});
+    if (law) spring.set_law(io::Expression(*law, {"l", "ldot", "t"}));
     Oscillator with(0, 0, 0.01, 0.1, false);
     o.model.load(spring);
     spring.implicit = true;

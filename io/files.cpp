@@ -78,19 +78,19 @@ void write_file(const std::string& name, const std::string& content)
 
 void write_file(const std::string& name, const std::function<void(const Append&)>& content)
 {
+    Temporary file(name);
+    content([&](std::string_view piece) { file.write(piece); });
+    file.commit();
+}
+
+void write_named_file(const std::string& name, const std::string& content)
+{
     std::error_code error;
     const fs::path target = fs::weakly_canonical(name, error);  // writes through a symbolic link
     const std::string path = error ? name : target.string();
-    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
-        // devices and pipes are written to, not replaced
-        std::ofstream out(path, std::ios::binary);
-        content([&](std::string_view piece) { out << piece; });
-        if (!out.flush()) fail(name);
-        return;
-    }
-    Temporary file(path);
-    content([&](std::string_view piece) { file.write(piece); });
-    file.commit();
+    if (!fs::exists(path, error) || fs::is_regular_file(path, error)) return write_file(path, content);
+    std::ofstream out(path, std::ios::binary);
+    if (!(out << content).flush()) fail(name);
 }
 
 void rename_file(const std::string& from, const std::string& to)
@@ -135,14 +135,30 @@ void make_directory(const std::string& directory)
     if (error) throw IoError(directory + ": cannot be created: " + error.message());
 }
 
+void make_folder_in(const std::string& directory, const std::string& name)
+{
+    const std::string path = directory + '/' + name;
+    std::error_code error;
+    if (fs::is_symlink(path, error))
+        throw IoError(path + ": is a symbolic link; remove it, or give another --output");
+    make_directory(path);
+}
+
 OutputFile::OutputFile(std::string file, std::uint64_t keep_bytes, bool resume)
     : path(std::move(file)), written(keep_bytes)
 {
-    descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC | (resume ? 0 : O_CREAT | O_TRUNC), 0666);
+    constexpr int flags = O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // a pipe would wait for a reader
+    descriptor = open(path.c_str(), flags | (resume ? 0 : O_CREAT | O_TRUNC), 0666);
+    if (descriptor < 0 && errno == ELOOP)
+        throw IoError(path + ": is a symbolic link; remove it, or give another --output");
     if (descriptor < 0) fail(path);
-    if (!resume) return;
     struct stat s {};
     if (fstat(descriptor, &s) != 0) fail(path);
+    if (!S_ISREG(s.st_mode)) {
+        close(descriptor);
+        throw IoError(path + ": is not a regular file; remove it, or give another --output");
+    }
+    if (!resume) return;
     if (static_cast<std::uint64_t>(s.st_size) < keep_bytes) {
         close(descriptor);
         throw IoError(path + ": is shorter than the checkpoint states: " + std::to_string(s.st_size) +
@@ -170,6 +186,24 @@ void OutputFile::sync()
 {
     flush();
     if (fdatasync(descriptor) != 0 && errno != EINVAL && errno != EROFS) fail(path);
+    require_name();
+}
+
+void OutputFile::finish()
+{
+    flush();
+    require_name();
+}
+
+void OutputFile::require_name() const
+{
+    struct stat open {
+    }, named{};
+    if (fstat(descriptor, &open) != 0) fail(path);
+    if (lstat(path.c_str(), &named) != 0 && errno != ENOENT) fail(path);
+    if (named.st_dev == open.st_dev && named.st_ino == open.st_ino) return;
+    throw IoError(path +
+                  ": was removed or replaced by another program while it was written; its rows are lost");
 }
 
 }  // namespace hilda::io

@@ -12,15 +12,19 @@
 
 namespace hilda::io {
 
-/// Writes a file atomically: to FILE.tmp, fsync, rename, fsync of the directory. After a crash the file has
-/// its old or its new contents. A symbolic link is followed; a device or pipe is written to directly.
-/// IoError; the temporary file is removed then.
+/// Writes a file of an output directory atomically: to FILE.tmp, fsync, rename, fsync of the directory. After
+/// a crash the file has its old or its new contents. A symbolic link, a device or a pipe of this name is
+/// replaced, not written to. IoError; the temporary file is removed then.
 void write_file(const std::string& path, const std::string& content);
 
 /// Receives the next piece of a content
 using Append = std::function<void(std::string_view piece)>;
 /// The same for a content that is not in memory as a whole: `content` passes its pieces to its argument.
 void write_file(const std::string& path, const std::function<void(const Append&)>& content);
+
+/// The same for a file that the user names: a symbolic link is followed; a device or pipe is written to
+/// directly.
+void write_named_file(const std::string& path, const std::string& content);
 
 /// Renames a file, replacing an existing file, and synchronises the directory with the disk. IoError.
 void rename_file(const std::string& from, const std::string& to);
@@ -41,11 +45,15 @@ bool is_missing_or_empty(const std::string& directory);
 /// Creates the directory and its parents. IoError.
 void make_directory(const std::string& directory);
 
+/// Creates a folder of the program, `name`, in an output directory. IoError, also if it is a symbolic link:
+/// the files would be written elsewhere.
+void make_folder_in(const std::string& directory, const std::string& name);
+
 /// A buffered output file with checked writes and known length, which can be continued from a checkpoint
 class OutputFile {
 public:
     /// Creates the file; with `resume`, opens it and truncates it to `keep_bytes` bytes. IoError, also if the
-    /// file is shorter than that.
+    /// file is shorter than that, a symbolic link, a device or a pipe.
     explicit OutputFile(std::string path, std::uint64_t keep_bytes = 0, bool resume = false);
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -63,14 +71,19 @@ public:
     }
     /// Writes the buffer. IoError.
     void flush();
-    /// flush() and fdatasync. IoError.
+    /// flush() and fdatasync. IoError, also if the file of this name is another one now: it was removed,
+    /// renamed or replaced.
     void sync();
+    /// flush() at the end of the file. IoError as of sync().
+    void finish();
     /// Length of the file including the buffer [byte]
     std::uint64_t size() const { return written + buffer.size(); }
     const std::string& name() const { return path; }
 
 private:
     static constexpr size_t full = 1 << 20;
+
+    void require_name() const;
 
     std::string path;
     int descriptor = -1;

@@ -97,7 +97,11 @@ void check_output_directory(const std::string& directory, bool accepted, const s
         throw UsageError(directory + ": is not empty; " + remedies);
 }
 
-OutputLock::OutputLock(std::string directory) : directory(std::move(directory)) { acquire(); }
+OutputLock::OutputLock(std::string directory, bool accepted, std::string remedies)
+    : directory(std::move(directory)), accepted(accepted), remedies(std::move(remedies))
+{
+    acquire();
+}
 
 OutputLock::~OutputLock()
 {
@@ -119,12 +123,23 @@ void OutputLock::acquire()
     constexpr int trials = 20;
     constexpr useconds_t between = 50000;  // [us]
     for (int trial = 1; trial <= trials; ++trial) {
-        if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+        if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return refuse_files();
         if (trial < trials) usleep(between);
     }
     close(descriptor);
     descriptor = -1;
     throw IoError(directory + ": another process writes to it; wait for its end, or give another --output");
+}
+
+void OutputLock::refuse_files()
+{
+    try {
+        check_output_directory(directory, accepted, remedies);
+    } catch (...) {
+        close(descriptor);
+        descriptor = -1;
+        throw;
+    }
 }
 
 void Verbosity::warn(const std::string& what) const

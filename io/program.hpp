@@ -25,18 +25,23 @@ inline constexpr const char* force_or_resume = "--force overwrites it, --resume 
 class OutputLock {
 public:
     /// Locks the directory if it exists. IoError if another process or object holds the lock for a second.
-    explicit OutputLock(std::string directory);
+    /// UsageError as of check_output_directory(), with `accepted` and `remedies`, if it contains files once
+    /// it is locked: another process may have written them since the directory was checked.
+    explicit OutputLock(std::string directory, bool accepted = true, std::string remedies = "");
     ~OutputLock();
     OutputLock(const OutputLock&) = delete;
     OutputLock& operator=(const OutputLock&) = delete;
 
-    /// Creates the directory and its parents if it does not exist, and locks it. IoError as above.
+    /// Creates the directory and its parents if it does not exist, and locks it. Errors as above.
     void create();
 
 private:
     void acquire();
+    void refuse_files();
 
     std::string directory;
+    bool accepted;
+    std::string remedies;
     int descriptor = -1;
 };
 

@@ -19,7 +19,7 @@ double seconds_of(std::chrono::steady_clock::duration d) { return std::chrono::d
 
 Resumable::Resumable(const ResumableOptions& options)
     : Verbosity{options.quiet, options.verbose}, files(options.directory), options(options),
-      lock(options.directory), begin(Clock::now())
+      lock(options.directory, options.force || options.resume, force_or_resume), begin(Clock::now())
 {}
 
 int Resumable::execute()

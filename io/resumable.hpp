@@ -34,6 +34,7 @@ struct ResumableOptions {
     std::string directory;
     double checkpoint = 0;  ///< wall time between two checkpoints [s]; 0: only after an interruption
     bool resume = false, quiet = false, verbose = false;
+    bool force = true;  ///< accept files of an earlier run in the directory
 };
 
 class Resumable : protected Verbosity {
@@ -96,6 +97,8 @@ protected:
     /// Restores the last checkpoint. Returns false if there is none. IoError if none can be read.
     bool load();
     void save();
+    /// Creates and locks the directory before prepare() does, for files of another program in it.
+    void create_directory() { lock.create(); }
     /// A complete run is unfinished from here on: it has another end.
     void extend();
     /// Records an interruption, with a checkpoint.

@@ -193,7 +193,7 @@ public:
         a.value(length);
         if (a.reads()) file.emplace(path, length, true);
     }
-    void close() override { file->flush(); }
+    void close() override { file->finish(); }
     std::vector<std::string> files() const override { return {name}; }
 
 protected:

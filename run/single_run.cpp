@@ -34,7 +34,8 @@ SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::
                  .checkpoint = options.checkpoint,
                  .resume = options.resume,
                  .quiet = options.quiet,
-                 .verbose = options.verbose}),
+                 .verbose = options.verbose,
+                 .force = options.force}),
       options(options), scheme(scheme), directory(directory), earlier(std::move(directory))
 {}
 
@@ -84,6 +85,7 @@ void SingleRun::prepare_coupling()
         dae::Description alone = named_model(options.model, options.set, options.normal_rows);
         dae::start(alone, {.fix_initial = options.fix_initial});
     }
+    create_directory();
     options.coupling->prepare(description, from ? std::optional(from->number) : std::nullopt);
 }
 

@@ -79,7 +79,7 @@ void write_cases(const std::string& name, const std::string& to)
     std::error_code error;
     const std::string file = std::filesystem::is_directory(to, error) ? file_in(to, *found) : to;
     check_replaceable(file, text);
-    io::write_file(file, text);
+    io::write_named_file(file, text);
 }
 
 std::string known_names(const std::string& word)

@@ -43,7 +43,7 @@ public:
             file->buffer += line;
             file->flush_when_full();
         });
-        io::make_directory(directory + "vtk");
+        io::make_folder_in(directory, "vtk");
         io::write_file(directory + frame(steps / times.steps),
                        [&](const io::Append& append) { fields_vti(spec.grid, sums, append); });
         sums.reset();
@@ -61,7 +61,7 @@ public:
     /// to a later end.
     void close(long steps)
     {
-        file->flush();
+        file->finish();
         std::vector<std::pair<double, std::string>> frames;
         for (long k = 0; k * times.steps <= steps; ++k)
             if (fs::exists(directory + frame(k)))

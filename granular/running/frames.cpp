@@ -39,7 +39,7 @@ public:
 
     void node(const World& w) override
     {
-        io::make_directory(directory + "vtk");
+        io::make_folder_in(directory, "vtk");
         const long k = w.steps() / steps;
         if (!w.all_boundaries().empty()) io::write_file(directory + boundary_frame(k), boundaries_vtp(w));
         if (c.outputs.contacts && c.outputs.contacts->network)

@@ -27,7 +27,8 @@ public:
                      .checkpoint = o.checkpoint,
                      .resume = o.resume,
                      .quiet = o.quiet,
-                     .verbose = o.verbose}),
+                     .verbose = o.verbose,
+                     .force = o.force}),
           o(o), from(std::move(from)), c(this->from.c), read_again(read_again), setup{c, o.output, o.outputs},
           saved_state(this->from), interval(setup.steps_in(c.interval)), steps(std::lround(c.end / c.h)),
           sinks(setup)

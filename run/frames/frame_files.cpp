@@ -23,7 +23,7 @@ FrameFiles::FrameFiles(const Drawing& drawing, std::string directory, std::strin
 
 void FrameFiles::open()
 {
-    io::make_directory(path("vtk"));
+    io::make_folder_in(directory, "vtk");
     if (patches.depend_on_frames()) motions.emplace(path(motions_file(name)));
     write_list();
 }
@@ -63,7 +63,7 @@ void FrameFiles::transfer(io::Archive& a)
     a.value(length);
     patches.transfer(a);
     if (!a.reads()) return;
-    io::make_directory(path("vtk"));
+    io::make_folder_in(directory, "vtk");
     if (patches.depend_on_frames()) motions.emplace(path(motions_file(name)), length, true);
     meshes = patches.meshes();
     outdated = times.size();  // the frames of a completed run have the part of its end

@@ -42,7 +42,7 @@ io::Json Snapshots::geometry() const { return Drawing::geometry(meshes()); }
 
 void Snapshots::write(const std::string& directory, const std::string& name) const
 {
-    io::make_directory(directory + "/vtk");
+    io::make_folder_in(directory, "vtk");
     const std::vector<BodyMesh> all = meshes();
     std::vector<std::pair<double, std::string>> files;
     for (size_t k = 0; k < frames.size(); ++k) {

@@ -272,7 +272,7 @@ int export_model(const ExportOptions& options)
     std::error_code error;
     if (std::filesystem::exists(output, error) && !options.force)
         throw io::InvalidInput(output + ": the file exists; --force replaces it");
-    io::write_file(output, text);
+    io::write_named_file(output, text);
     for (const std::string& what : left_out) io::warning(d.name + ": not exported: " + what);
     std::cout << "written       " << output << '\n';
     return io::exit_code::done;

@@ -77,7 +77,7 @@ int import_model(const ImportOptions& options)
     std::error_code error;
     if (fs::exists(output, error) && !options.force)
         throw io::InvalidInput(output + ": the file exists; --force replaces it");
-    io::write_file(output, text);
+    io::write_named_file(output, text);
     for (const std::string& warning : model.warnings)
         io::warning(options.file + ": not imported: " + warning);
     std::cout << fmt::format(

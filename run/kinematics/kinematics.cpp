@@ -218,7 +218,7 @@ int run_kinematics(const KinematicsOptions& options)
     if (!options.quiet && !d.events.empty())
         io::warning(d.events.front().value->name_place + ": events are found by hilda run only");
 
-    io::OutputLock lock(directory);
+    io::OutputLock lock(directory, options.force, io::force_overwrites);
     lock.create();
     io::Sinks<RunSetup>::remove(directory);
     io::CheckpointFiles(directory).remove();

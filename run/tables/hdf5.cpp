@@ -195,6 +195,7 @@ void Hdf5File::write() const
 {
     const LibraryLock lock;
     const std::string temporary = path + ".tmp";
+    std::remove(temporary.c_str());  // of a process that was killed; a link is removed, not followed
     try {
         const bool continues =
             std::any_of(parts.begin(), parts.end(), [](const auto& p) { return p->written > 0; });
@@ -341,7 +342,7 @@ public:
     }
     void close() override
     {
-        rows->flush();
+        rows->finish();
         rows.reset();
         file->end();
     }

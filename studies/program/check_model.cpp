@@ -277,7 +277,7 @@ void write_projected(const dae::Description& d, const std::string& model, const 
     }
     dae::Description written = dae::read_model(text, file);
     dae::start(written);
-    io::write_file(file, text);
+    io::write_named_file(file, text);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 namespace hilda::studies {
@@ -228,6 +229,8 @@ int fit_model(const FitOptions& options)
     if (options.parameters.empty())
         throw io::UsageError("fit: --parameter /json/pointer is required: the numbers that are fitted");
     const run::FitProblem problem = problem_of(options);
+    std::optional<io::OutputLock> lock;
+    if (!directory.empty()) lock.emplace(directory, options.force, io::force_overwrites).create();
     const run::FitResult result = fit(problem);
     const io::Json all = as_json(result, problem, options);
     if (options.json)
@@ -237,7 +240,6 @@ int fit_model(const FitOptions& options)
     for (const std::string& warning : result.warnings)
         if (!options.quiet) io::warning(warning);
     if (!directory.empty()) {
-        io::make_directory(directory);
         run::remove_figure(directory, "fit.png");
         io::write_file(directory + "/model.json", result.model.text);
         io::write_file(directory + "/fit.csv", table_of(result, problem.data));

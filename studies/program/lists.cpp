@@ -97,7 +97,7 @@ int write_model(const std::string& name, const std::string& to)
     }
     const bool is_folder = std::filesystem::is_directory(to, error);
     if (is_folder) check_replaceable(file_in(to, name), text);
-    io::write_file(is_folder ? file_in(to, name) : to, text);
+    io::write_named_file(is_folder ? file_in(to, name) : to, text);
     return io::exit_code::done;
 }
 

@@ -110,10 +110,11 @@ int run_here(const Study& study, const StudyArguments& arguments, const run::Job
     const StudyOptions& options = arguments.options;
     std::optional<io::OutputLock> lock;
     if (!options.output.empty()) {
-        io::check_output_directory(
-            options.output, options.force || options.resume,
-            run::FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites);
-        lock.emplace(options.output).create();
+        const bool accepted = options.force || options.resume;
+        const std::string remedies =
+            run::FinishedJobs::in(options.output) ? io::force_or_resume : io::force_overwrites;
+        io::check_output_directory(options.output, accepted, remedies);
+        lock.emplace(options.output, accepted, remedies).create();
     }
     const io::EndOnSignal end_on_signal(options.output.empty() || collected != nullptr
                                             ? ""

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -45,12 +46,20 @@ TEST_CASE("a file is written as a whole and replaces the old one", "[io][files]"
     CHECK(io::read_file(in.file("a"), 4) == text);
     CHECK(names(in.path) == std::vector<std::string>{"a"});
 
-    SECTION("through a symbolic link")
+    SECTION("through a symbolic link that the user names")
+    {
+        fs::create_symlink("a", in.path / "link");
+        io::write_named_file(in.file("link"), "new");
+        CHECK(fs::is_symlink(in.path / "link"));
+        CHECK(io::read_file(in.file("a"), 10) == "new");
+    }
+    SECTION("not through a symbolic link in an output directory")
     {
         fs::create_symlink("a", in.path / "link");
         io::write_file(in.file("link"), "new");
-        CHECK(fs::is_symlink(in.path / "link"));
-        CHECK(io::read_file(in.file("a"), 10) == "new");
+        CHECK_FALSE(fs::is_symlink(in.path / "link"));
+        CHECK(io::read_file(in.file("link"), 10) == "new");
+        CHECK(io::read_file(in.file("a"), 10) == text);
     }
     SECTION("renamed over another one")
     {
@@ -127,6 +136,71 @@ TEST_CASE("an error of a file names its path and the reason", "[io][files]")
     CHECK_THAT(error([&] { io::is_missing_or_empty(in.file("long")); }), Contains("is not a directory"));
     CHECK(io::is_missing_or_empty(in.file("none")));
     CHECK_FALSE(io::is_missing_or_empty(in.path.string()));
+}
+
+TEST_CASE("an output file that is removed or replaced while it is written is an error", "[io][files]")
+{
+    const Directory in;
+    const std::string path = in.file("rows.csv");
+    for (const bool replaced : {false, true})
+        for (const bool synchronises : {false, true}) {
+            io::OutputFile file(path);
+            file.buffer += "t,x\n";
+            CHECK_NOTHROW(file.sync());
+            CHECK_NOTHROW(file.finish());
+            fs::remove(path);
+            if (replaced) std::ofstream(path) << "t,x\n";
+            const std::string message =
+                path + ": was removed or replaced by another program while it was written; its rows are lost";
+            if (synchronises)
+                CHECK_THROWS_WITH(file.sync(), message);
+            else
+                CHECK_THROWS_WITH(file.finish(), message);
+        }
+}
+
+TEST_CASE("an output file is not written through a link, nor to a device or a pipe", "[io][files]")
+{
+    const Directory in;
+    io::write_file(in.file("other"), "of another program");
+    fs::create_symlink("other", in.path / "link");
+    fs::create_symlink("none", in.path / "nowhere");
+    REQUIRE(mkfifo(in.file("pipe").c_str(), 0600) == 0);
+    for (const bool resume : {false, true}) {
+        const std::string remedy = "; remove it, or give another --output";
+        CHECK_THROWS_WITH(io::OutputFile(in.file("link"), 0, resume),
+                          in.file("link") + ": is a symbolic link" + remedy);
+        CHECK_THROWS_AS(io::OutputFile(in.file("nowhere"), 0, resume), io::IoError);
+        CHECK_THROWS_AS(io::OutputFile(in.file("pipe"), 0, resume), io::IoError);
+        CHECK_THROWS_AS(io::OutputFile(in.path.string(), 0, resume), io::IoError);
+    }
+    CHECK_THROWS_WITH(io::OutputFile("/dev/null"),
+                      "/dev/null: is not a regular file; remove it, or give another --output");
+    CHECK(io::read_file(in.file("other"), 100) == "of another program");
+    CHECK_FALSE(fs::exists(in.path / "none"));
+
+    fs::create_directory(in.path / "elsewhere");
+    fs::create_symlink("elsewhere", in.path / "vtk");
+    CHECK_THROWS_WITH(io::make_folder_in(in.path.string(), "vtk"),
+                      in.file("vtk") + ": is a symbolic link; remove it, or give another --output");
+    io::make_folder_in(in.path.string(), "frames");
+    CHECK(fs::is_directory(in.path / "frames"));
+}
+
+TEST_CASE("a lock finds the files that another process has written since the directory was checked",
+          "[io][files]")
+{
+    const Directory in;
+    const std::string directory = in.file("run");
+    io::OutputLock late(directory, false, io::force_overwrites), with_force(directory, true);
+    {
+        io::OutputLock first(directory, false);
+        first.create();
+        io::write_file(directory + "/fit.json", "{}");
+    }
+    CHECK_THROWS_WITH(late.create(), directory + ": is not empty; --force overwrites it");
+    CHECK_THROWS_AS(io::OutputLock(directory, false), io::UsageError);
+    CHECK_NOTHROW(with_force.create());
 }
 
 TEST_CASE("an output directory is locked until the lock ends", "[io][files]")

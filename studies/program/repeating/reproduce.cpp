@@ -59,7 +59,7 @@ pid_t start(std::vector<std::string> words, int threads, const std::string& outp
         // Threads that wait actively would slow down the studies beside this one.
         setenv("OMP_NUM_THREADS", omp_threads.c_str(), 0);
         setenv("OMP_WAIT_POLICY", "passive", 0);
-        constexpr int create = O_WRONLY | O_CREAT | O_TRUNC;
+        constexpr int create = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW;
         if (dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO) < 0 ||
             dup2(::open(output.c_str(), create, 0666), STDOUT_FILENO) < 0 ||
             dup2(::open(messages.c_str(), create, 0666), STDERR_FILENO) < 0)
@@ -129,10 +129,11 @@ private:
         if (o.resume && !begun)
             throw io::UsageError(o.output + ": has no interrupted reproduction; --resume needs its file " +
                                  record_name);
-        io::check_output_directory(
-            o.output, o.force || o.resume,
-            begun ? "--force overwrites it, --resume continues it" : io::force_overwrites);
-        lock.emplace(o.output).create();
+        const bool accepted = o.force || o.resume;
+        const std::string remedies =
+            begun ? "--force overwrites it, --resume continues it" : io::force_overwrites;
+        io::check_output_directory(o.output, accepted, remedies);
+        lock.emplace(o.output, accepted, remedies).create();
         if (o.resume) read_record();
         io::write_file(path(record_name), record.text());
     }

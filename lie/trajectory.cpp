@@ -35,6 +35,23 @@ void refuse_overflow(const System& system, const State& to)
     }
 }
 
+/// Throws if the orientation of a body is not a rotation: an integrator from outside the library is wrong.
+void refuse_distortion(const System& system, const State& to)
+{
+    constexpr double most = 1e-6;  // above the errors of normalised Euler parameters and of sums of rotations
+    for (size_t b = 0; b < to.body.size(); ++b) {
+        const Mat3& A = to.body[b].A;
+        const double error = (A.transpose() * A - Mat3::Identity()).cwiseAbs().maxCoeff();
+        if (error <= most && A.determinant() > 0) continue;
+        std::ostringstream what;
+        what.precision(3);
+        what << system.body_name(static_cast<int>(b))
+             << ": the orientation A after the step is not a rotation: the largest entry of A^T A - I is "
+             << error << ", the limit " << most << ", and det A is " << A.determinant();
+        throw NumericalFailure("not_a_rotation", what.str());
+    }
+}
+
 }  // namespace
 
 TimeGrid TimeGrid::over(double t_end, double h, double dt)
@@ -105,6 +122,7 @@ int March::try_step(State& to)
     const int k = integrator.step(to, h);
     to.t = t_0 + time(n + 1);
     refuse_overflow(integrator.system(), to);
+    refuse_distortion(integrator.system(), to);
     if (!integrator.chooses_internal_steps()) refuse_half_turns(x, to);
     return k;
 }

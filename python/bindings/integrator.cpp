@@ -5,9 +5,25 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace hilda::python {
+
+namespace {
+
+/// Throws if a step has set the time to another value than that of its end. A step need not set it.
+void refuse_other_time(double after, double before, double h)
+{
+    if (after == before || std::abs(after - (before + h)) <= 1e-9 * h) return;
+    PyErr_SetString(PyExc_ValueError,
+                    fmt::format("step() of an integrator must leave x.t at {} s or set it to {} s, got {}",
+                                before, before + h, after)
+                        .c_str());
+    throw py::error_already_set();
+}
+
+}  // namespace
 
 PythonIntegrator::PythonIntegrator(py::object object, const lie::System& model)
     : object(std::move(object)), model(model)
@@ -22,6 +38,7 @@ int PythonIntegrator::step(lie::State& x, double h)
         state.writable = true;
         const py::object count = object.attr("step")(lent.object(), h);
         const int k = count.is_none() ? 0 : count.cast<int>();
+        refuse_other_time(state.x.t, x.t, h);
         x.body = state.x.body;
         x.lambda = state.x.lambda;
         ++steps;

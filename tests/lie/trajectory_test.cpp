@@ -77,6 +77,42 @@ TEST_CASE("a step in which a body rotates by half a turn or more is refused", "[
         }
 }
 
+TEST_CASE("a step after which an orientation is not a rotation is refused", "[lie][march]")
+{
+    /// Leaves all as it is but A, which it multiplies by a factor.
+    class Scales final : public lie::Integrator {
+    public:
+        Scales(const lie::System& top, double factor) : top(top), factor(factor) {}
+        const lie::System& system() const override { return top; }
+        int step(lie::State& x, double /*h*/) override
+        {
+            for (lie::Motion& body : x.body) body.A *= factor;
+            return 1;
+        }
+        lie::Statistics statistics() const override { return {}; }
+
+    private:
+        const lie::System& top;
+        const double factor;
+    };
+    const tests::SpinningTop top;
+    const auto end = [&](double factor) {
+        Scales integrator(top, factor);
+        return lie::march(top.start(), integrator, lie::TimeGrid::over(0.05, 1e-2));
+    };
+    CHECK_NOTHROW(end(1 + 1e-8));
+    for (const double factor : {1 + 1e-5, -1., 0.}) {
+        INFO(factor);
+        try {
+            end(factor);
+            FAIL("accepted");
+        } catch (const lie::NumericalFailure& failure) {
+            CHECK(failure.status == "not_a_rotation");
+            CHECK_THAT(failure.what(), Catch::Contains("the orientation A after the step is not a rotation"));
+        }
+    }
+}
+
 TEST_CASE("a grid with a huge output interval has the rows of its ends", "[lie][trajectory]")
 {
     for (const double dt : {1e20, 1e300}) {

@@ -170,6 +170,46 @@ class Integrators(unittest.TestCase):
         with self.assertRaisesRegex(hilda.InvalidInput, "without contacts as constraints"):
             hilda.Model("ball_in_bowl").run(Fails)
 
+    def test_a_step_that_spoils_the_state_ends_the_run(self):
+        class Spoils(HalfImplicit):
+            def step(self, x, h):
+                count = super().step(x, h)
+                self.spoil(x, h)
+                return count
+
+        def spoiled(spoil):
+            return type("Spoiled", (Spoils,), {"spoil": lambda self, x, h: spoil(x, h)})
+
+        def scale(x, h):
+            x.A[0] *= 1.001
+
+        def reflect(x, h):
+            x.A[0] = -x.A[0]
+
+        def stretch_late(x, h):
+            if x.t > 0.035:
+                x.A[0, 0, 0] += 1e-3
+
+        for spoil in (scale, reflect, stretch_late):
+            for run in ("run", "Simulation"):
+                with self.subTest(spoil=spoil.__name__, run=run):
+                    with self.assertRaisesRegex(hilda.NumericalFailure, "after the step is not a rotation") as caught:
+                        if run == "run":
+                            hilda.Model("double_pendulum").run(spoiled(spoil), step=1e-2, end=0.1)
+                        else:
+                            hilda.Simulation(hilda.Model("double_pendulum"), spoiled(spoil), step=1e-2, end=0.1).advance(0.1)
+                    self.assertEqual(caught.exception.status, "not_a_rotation")
+
+        def late(x, h):
+            x.t += h
+
+        def nowhere(x, h):
+            x.t = float("nan")
+
+        for spoil in (late, nowhere):
+            with self.assertRaisesRegex(ValueError, r"must leave x.t at 0 s or set it to 0.01 s, got"):
+                hilda.Model("double_pendulum").run(spoiled(spoil), step=1e-2, end=0.1)
+
     def test_rotations(self):
         theta = np.array([[0.3, -0.2, 0.5], [0, 0, 0], [1e-9, 0, 0], [0, 3, 0]])
         A = so3.exp(theta)

@@ -46,7 +46,7 @@ public:
     explicit Commands(std::string command_line_text, const std::vector<std::string>& plugins = {})
         : command_line_text(std::move(command_line_text))
     {
-        run.options.plugins = study.plugins = plugins;
+        run.options.plugins = study.plugins = repeated.plugins = plugins;
         app.set_version_flag("--version", run::version_line());
         app.set_help_flag("-h,--help", "print this text; hilda COMMAND --help: the options of a command");
         app.add_option(

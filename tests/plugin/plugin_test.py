@@ -118,6 +118,14 @@ with tempfile.TemporaryDirectory() as folder:
         ended = call("--load", changed, *command, "--resume")
         check(ended.returncode == 0, f"{name} does not continue: {ended.returncode}\n{ended.stderr}")
 
+    # a result with a plug-in is repeated with the same plug-in only
+    ended = call(*mine, "run", "plugin_pendulum", "--integrator", "demo-kick", "--end", "0.01", "--quiet", "--output",
+                 folder / "once")
+    check(ended.returncode == 0, f"run to be repeated:\n{ended.stderr}")
+    refused(2, "whose code would be executed", "rerun", folder / "once")
+    ended = call(*mine, "rerun", folder / "once")
+    check(ended.returncode == 0, f"rerun with a plug-in: {ended.returncode}\n{ended.stdout}{ended.stderr}")
+
     # wrong plug-ins
     other = folder / "other.so"
     whole = (plugins / "every_kind.so").read_bytes()

@@ -129,6 +129,49 @@ std::vector<std::string> with_output(const std::vector<std::string>& words, cons
     return all;
 }
 
+/// The number of the options --load FILE before the command. io::UsageError unless `plugins` are these.
+size_t loaded_by(const std::vector<std::string>& words, const std::string& file, const RerunOptions& options)
+{
+    size_t k = 1;
+    while (k < words.size() && words[k].starts_with("--load")) {
+        const bool in_one = words[k].starts_with("--load=");
+        if (!in_one && k + 1 == words.size()) break;
+        const std::string plugin = in_one ? words[k].substr(7) : words[k + 1];
+        k += in_one ? 1 : 2;
+        std::error_code error;
+        const std::string path = fs::weakly_canonical(plugin, error).string() + " (";
+        if (std::none_of(options.plugins.begin(), options.plugins.end(),
+                         [&](const std::string& loaded) { return loaded.starts_with(path); }))
+            throw io::UsageError(
+                fmt::format("{}: the command loads the plug-in {}, whose code would be executed; "
+                            "hilda --load {} rerun {} permits it",
+                            file, plugin, plugin, options.directory));
+    }
+    return k;
+}
+
+/// io::InvalidInput unless the command writes a result to --output and nothing else.
+void refuse_other_command(const std::vector<std::string>& words, const std::string& program,
+                          const Record& record, const RerunOptions& options)
+{
+    static constexpr std::string_view repeatable[] = {"run",     "study", "fit",     "kinematics",
+                                                      "inverse", "cosim", "collect", "granular"};
+    static constexpr std::string_view of_other_files[] = {"--write", "--lammps", "--exchange"};
+    size_t k = 1;
+    if (program == "hilda") {
+        k = loaded_by(words, record.file, options);
+        const std::string command = k < words.size() ? words[k] : "";
+        if (std::find(std::begin(repeatable), std::end(repeatable), command) == std::end(repeatable))
+            throw io::InvalidInput(fmt::format("{}: the command '{}' is not repeated; hilda rerun repeats {}",
+                                               record.file, command, fmt::join(repeatable, ", ")));
+    }
+    for (; k < words.size() && words[k] != "--"; ++k)
+        for (const std::string_view option : of_other_files)
+            if (words[k].starts_with(option))
+                throw io::InvalidInput(fmt::format(
+                    "{}: a command with {} is not repeated: it writes no result", record.file, option));
+}
+
 /// Runs a program and waits for it. Returns its exit code.
 int run(const std::string& program, std::vector<std::string> words)
 {
@@ -190,6 +233,7 @@ int rerun(const RerunOptions& options)
     const std::string name = fs::path(words.front()).filename();
     if (name != "hilda" && name != "hilda-granular")
         throw io::InvalidInput(record.file + ": the command is of no program of HILDA: " + record.command);
+    refuse_other_command(words, name, record, options);
     std::string output = options.output;
     if (output.empty()) {
         const fs::path given = (fs::path(options.directory) / "").parent_path();

@@ -60,6 +60,32 @@ TEST_CASE("hilda rerun refuses a folder that is no result")
     CHECK_THAT(other.err, Contains("of no program of HILDA: rm -r x"));
 }
 
+TEST_CASE("hilda rerun repeats only commands that write a result, and loads no plug-in without consent")
+{
+    const Scratch in;
+    fs::create_directory(in / "a");
+    const auto refusal = [&](const std::string& command, int code) {
+        write(in / "a/summary.json", R"({"provenance": {"command_line": ")" + command + "\"}}");
+        const Ended ended = call(in, {"rerun", "a", "--output", "b"});
+        INFO(command);
+        CHECK(ended.code == code);
+        CHECK(ended.out.empty());
+        CHECK_FALSE(fs::exists(in / "b"));
+        return ended.err;
+    };
+    for (const char* command : {"hilda rerun a", "hilda reproduce", "hilda view a", "hilda plot a", "hilda",
+                                "hilda models double_pendulum --write x", "hilda import a.urdf --force",
+                                "hilda --version", "hilda --load", "hilda new integrator mine"})
+        CHECK_THAT(refusal(command, 3), Contains("is not repeated; hilda rerun repeats run, study, fit"));
+    for (const char* command : {"hilda-granular cases --write x", "hilda granular cases bed --write=x",
+                                "hilda-granular export bed --lammps", "hilda-granular bed --exchange"})
+        CHECK_THAT(refusal(command, 3), Contains("is not repeated: it writes no result"));
+    for (const char* command : {"hilda --load evil.so run double_pendulum", "hilda --load=evil.so run x",
+                                "hilda --load ./evil.so rerun a"})
+        CHECK_THAT(refusal(command, 2), Contains("the command loads the plug-in") && Contains("evil.so") &&
+                                            Contains("rerun a permits it"));
+}
+
 TEST_CASE("hilda rerun repeats the results of several integrators, and of one of them")
 {
     const Scratch in;

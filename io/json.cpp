@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/json.hpp"
 
+#include "io/formats/characters.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -197,7 +199,7 @@ std::string in_quotes(std::string_view s)
 {
     std::string out;
     append_quoted(out, excerpt(s));
-    return out;
+    return printable(out);
 }
 
 std::size_t utf8_length(std::string_view s)

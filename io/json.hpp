@@ -94,7 +94,7 @@ std::string shortest(double x);
 
 /// The first characters of a text, at most 60 bytes
 std::string excerpt(std::string_view text);
-/// An excerpt in double quotes, with the escapes of JSON
+/// An excerpt in double quotes, with the escapes of JSON, also of all characters that printable() escapes
 std::string in_quotes(std::string_view text);
 
 /// Number of bytes of the UTF-8 character (RFC 3629) at the beginning of a text that is not empty; 0 if it is

@@ -2,11 +2,33 @@
 #include "io/message.hpp"
 
 #include "io/error.hpp"
+#include "io/formats/characters.hpp"
 
 #include <cstdarg>
 #include <new>
 
 namespace hilda::io {
+
+void raw_message(const std::string& text) noexcept
+{
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+void message(const std::string& text) noexcept
+{
+    std::string all;
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t end = rest.find('\n');
+        all += printable(rest.substr(0, end));
+        if (end == std::string_view::npos) break;
+        all += '\n';
+        rest.remove_prefix(end + 1);
+    }
+    raw_message(all);
+}
+
+void warning(const std::string& what) { message("hilda: warning: " + what + '\n'); }
 
 std::string formatted(const char* format, ...)
 {
@@ -25,26 +47,10 @@ std::string counted(long n, const std::string& one, const std::string& many)
     return std::to_string(n) + ' ' + (n == 1 ? one : many.empty() ? one + 's' : many);
 }
 
-namespace {
-
-/// The text of an error on one line, also if it quotes a name with line breaks or other control characters
-std::string on_one_line(std::string_view text)
-{
-    std::string line;
-    for (const char c : text)
-        if (c == '\n')
-            line += "\\n";
-        else
-            line += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    return line;
-}
-
-}  // namespace
-
 int report(const std::exception& error)
 {
     const auto say = [&](const std::string& head, int code) {
-        message("hilda: " + head + ": " + on_one_line(error.what()) + '\n');
+        message("hilda: " + head + ": " + printable(error.what()) + '\n');
         return code;
     };
     if (const auto* failure = dynamic_cast<const Failure*>(&error)) return say("error", failure->code);

@@ -9,15 +9,14 @@
 
 namespace hilda::io {
 
-/// Writes a text to stderr. Errors of stderr (closed, or redirected to a full disk) are ignored.
-inline void message(const std::string& text) noexcept
-{
-    std::fputs(text.c_str(), stderr);
-    std::fflush(stderr);
-}
+/// Writes a text to stderr, with the escapes of printable() except for line breaks: names in it may come from
+/// files of others. Errors of stderr (closed, or redirected to a full disk) are ignored.
+void message(const std::string& text) noexcept;
+/// Writes a text with control characters of its own, such as those of a progress line, as it is.
+void raw_message(const std::string& text) noexcept;
 
 /// Writes the line "hilda: warning: WHAT".
-inline void warning(const std::string& what) { message("hilda: warning: " + what + '\n'); }
+void warning(const std::string& what);
 
 /// The text that printf() would print
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);

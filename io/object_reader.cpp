@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/object_reader.hpp"
 
+#include "io/formats/characters.hpp"
 #include "io/nearest.hpp"
 #include "io/schema/schema_recorder.hpp"
 
@@ -24,8 +25,6 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
     const std::string meant = did_you_mean(word, known);
     return meant.empty() ? "; allowed: " + joined(known) : meant;
 }
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }
 
 }  // namespace
 
@@ -221,7 +220,7 @@ std::string ObjectReader::name(std::string_view key, const About& about,
 {
     note_value(key, "name", about, fallback);
     std::string s = text_of(key, fallback);
-    if (s.empty() || std::any_of(s.begin(), s.end(), is_control))
+    if (s.empty() || printable(s) != s)
         fail(key, std::string(key) + " must be a name without control characters, got " + described(s));
     return s;
 }
@@ -231,7 +230,7 @@ std::string ObjectReader::file(std::string_view key, const About& about)
     note(key, "file", about);
     const Json& v = *lookup(key, true);
     const std::string* path = v.string();
-    if (path == nullptr || path->empty() || std::any_of(path->begin(), path->end(), is_control))
+    if (path == nullptr || path->empty() || printable(*path) != *path)
         fail(key, std::string(key) + " must be the path of a file, got " + described(v));
     source.files.push_back(path->front() == '/' || source.base.empty() ? *path : source.base + '/' + *path);
     return source.files.back();

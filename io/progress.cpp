@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/progress.hpp"
 
+#include "io/formats/characters.hpp"
 #include "io/message.hpp"
 
 #include <sys/ioctl.h>
@@ -74,13 +75,13 @@ void ProgressLine::show(const std::string& text, Clock::time_point now)
     }
     const std::size_t width = terminal_width() - 1;
     const std::size_t text_width = width > end.size() ? width - end.size() : 0;
-    message("\r" + (text.substr(0, text_width) + end).substr(0, width) + "\033[K");
+    raw_message("\r" + (printable(text).substr(0, text_width) + end).substr(0, width) + "\033[K");
     visible = true;
 }
 
 void ProgressLine::clear()
 {
-    if (visible) message("\r\033[K");
+    if (visible) raw_message("\r\033[K");
     visible = false;
 }
 

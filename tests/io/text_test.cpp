@@ -2,7 +2,9 @@
 /// Text of numbers, names and command lines, and the checksum.
 #include "io/archive.hpp"
 #include "io/error.hpp"
+#include "io/formats/characters.hpp"
 #include "io/formats/csv.hpp"
+#include "io/json.hpp"
 #include "io/message.hpp"
 #include "io/provenance.hpp"
 
@@ -41,6 +43,21 @@ TEST_CASE("a name with a comma, a quote or a line break is quoted as one CSV fie
     CHECK(io::csv_field("a,b") == "\"a,b\"");
     CHECK(io::csv_field("a \"b\"") == "\"a \"\"b\"\"\"");
     CHECK(io::csv_field("a\nb") == "\"a\nb\"");
+}
+
+TEST_CASE("characters that a terminal would act on are escaped", "[io][text]")
+{
+    CHECK(io::printable("Stütze 1 (µ = 0.3), 轴, محور") == "Stütze 1 (µ = 0.3), 轴, محور");
+    CHECK(io::printable("a\nb\tc\x1b[31m\x7f") == "a\\nb\\u0009c\\u001b[31m\\u007f");
+    CHECK(io::printable(std::string("a\0b", 3)) == "a\\u0000b");
+    CHECK(io::printable("\xC2\x9B"
+                        "31m\xC2\x85\xC2\xA0") == "\\u009b31m\\u0085\xC2\xA0");  // U+00A0 is a blank
+    CHECK(io::printable("\u202Ednuorg\u202C \u2066\u2069 \u200F\u061C\u2028") ==
+          "\\u202ednuorg\\u202c \\u2066\\u2069 \\u200f\\u061c\\u2028");
+    CHECK(io::printable("\x9B\xFF\xE2\x82") == "\\x9b\\xff\\xe2\\x82");  // not UTF-8
+    CHECK(io::printable(io::printable("\u202E\n")) == io::printable("\u202E\n"));
+    CHECK(io::in_quotes("a\u202E\x7F") == "\"a\\u202e\\u007f\"");
+    CHECK(io::in_quotes(std::string_view("a\0b", 3)) == "\"a\\u0000b\"");
 }
 
 TEST_CASE("a command line is quoted such that a shell reads the same words", "[io][text]")

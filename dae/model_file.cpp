@@ -429,10 +429,10 @@ private:
 }  // namespace
 
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set,
-                       const std::string& normal_rows, const std::string& folder)
+                       const std::string& normal_rows, const std::string& folder, const std::string& within)
 {
     JsonSource source{std::string(text), file};
-    source.base = folder;
+    source.base = folder, source.within = within;
     for (const std::string& change : set) source.set(change);
     const Parameters parameters(source);
     source.parameters = &parameters;
@@ -458,7 +458,7 @@ void record_model(const std::string& example, const std::string& name, io::Schem
 }
 
 Description load_model(const std::string& path, std::span<const std::string> set,
-                       const std::string& normal_rows)
+                       const std::string& normal_rows, bool allow_paths)
 {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -474,7 +474,9 @@ Description load_model(const std::string& path, std::span<const std::string> set
     if (error || !in.read(text.data(), static_cast<std::streamsize>(size)))
         throw lie::InvalidInput(
             path + ": the file cannot be read: " + (error ? error.message() : std::strerror(errno)));
-    Description description = read_model(text, path, set, normal_rows, fs::path(path).parent_path().string());
+    const std::string folder = fs::path(path).parent_path().string();
+    const std::string within = allow_paths ? "" : fs::absolute(path).parent_path().string();
+    Description description = read_model(text, path, set, normal_rows, folder, within);
     description.files.insert(description.files.begin(), path);
     return description;
 }

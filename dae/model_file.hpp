@@ -43,21 +43,22 @@ struct Description {
 /// "/json/pointer=VALUE" and changes one value, or adds a key, before the model is built. A VALUE that is not
 /// valid JSON is taken as a string. `normal_rows` replaces the key "rows" of all contact constraints: tangent
 /// or fixed-xy; "": as in the text. `folder` contains the files that the text names by relative paths;
-/// "": the current directory.
+/// "": the current directory. All files that the text names must be below `within`; "": they may be anywhere.
 ///
 /// Throws lie::InvalidInput "FILE:LINE:COL (/json/pointer): what is wrong, the value given" for invalid
 /// syntax, for unknown, missing and duplicate keys, and for invalid types, ranges, names and expressions.
 Description read_model(std::string_view text, const std::string& file, std::span<const std::string> set = {},
-                       const std::string& normal_rows = "", const std::string& folder = "");
+                       const std::string& normal_rows = "", const std::string& folder = "",
+                       const std::string& within = "");
 
 /// Records the keys of a model file for the schema, by reading an example. `name` is that of the example in
 /// messages. Throws as read_model().
 void record_model(const std::string& example, const std::string& name, io::SchemaRecorder& recorder);
 
-/// Reads a model from a regular file of at most 64 MiB. Throws lie::InvalidInput without a line number if the
-/// file cannot be read.
+/// Reads a model from a regular file of at most 64 MiB. The files that it names must be below its folder
+/// unless `allow_paths`. Throws lie::InvalidInput without a line number if the file cannot be read.
 Description load_model(const std::string& path, std::span<const std::string> set = {},
-                       const std::string& normal_rows = "");
+                       const std::string& normal_rows = "", bool allow_paths = false);
 
 /// The canonical form of the model with the positions, orientations and velocities of x as initial data, for
 /// example those that start() has projected onto the constraints. Angles, displacements and orientations that

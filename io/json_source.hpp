@@ -52,7 +52,7 @@ public:
 
     Json root;
     std::string base;    ///< folder of relative names of files; "": the current directory
-    std::string within;  ///< folder that must contain the files of a granular case; "": they may be anywhere
+    std::string within;  ///< folder that must contain the files that the text names; "": they may be anywhere
     /// Files that the text names: the paths that ObjectReader::file() has returned
     mutable std::vector<std::string> files;
     const Parameters* parameters = nullptr;  ///< of the readers; nullptr: numbers are written as digits

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace hilda::io {
 
@@ -233,7 +234,22 @@ std::string ObjectReader::file(std::string_view key, const About& about)
     if (path == nullptr || path->empty() || printable(*path) != *path)
         fail(key, std::string(key) + " must be the path of a file, got " + described(v));
     source.files.push_back(path->front() == '/' || source.base.empty() ? *path : source.base + '/' + *path);
+    require_within(key, source.files.back(), "file that names it");
     return source.files.back();
+}
+
+void ObjectReader::require_within(std::string_view key, const std::string& path,
+                                  const std::string& whose) const
+{
+    namespace fs = std::filesystem;
+    if (source.within.empty()) return;
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(source.within, error),
+                   canonical = fs::weakly_canonical(fs::absolute(path, error), error);
+    if (error ||
+        std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first != folder.end())
+        fail(key, std::string(key) + " must be below the folder of the " + whose + ", " + folder.string() +
+                      ", got " + described(*peek(key)) + "; --allow-paths accepts it");
 }
 
 std::string ObjectReader::one_of(std::string_view key, const std::vector<std::string>& allowed,

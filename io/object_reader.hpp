@@ -52,9 +52,11 @@ public:
     /// A text that is not empty and has no control characters, for use in messages and table headers
     std::string name(std::string_view key, const About& about = {},
                      const std::optional<std::string>& fallback = {});
-    /// Path of a file, relative to the folder of the text (JsonSource::base) unless it is absolute. It is
-    /// not recorded.
+    /// Path of a file, relative to the folder of the text (JsonSource::base) unless it is absolute. It must
+    /// be below JsonSource::within, also after symbolic links have been followed. It is not recorded.
     std::string file(std::string_view key, const About& about = {});
+    /// Refuses a path of this key outside of JsonSource::within, "the folder of the WHOSE".
+    void require_within(std::string_view key, const std::string& path, const std::string& whose) const;
     /// One of the allowed words
     std::string one_of(std::string_view key, const std::vector<std::string>& allowed, const About& about = {},
                        const std::optional<std::string>& fallback = {});

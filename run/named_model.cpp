@@ -49,11 +49,11 @@ bool is_model_path(const std::string& name_or_path)
 }
 
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set,
-                             const std::string& normal_rows)
+                             const std::string& normal_rows, bool allow_paths)
 {
     dae::Description d;
     if (is_model_path(name_or_path)) {
-        d = dae::load_model(name_or_path, set, normal_rows);
+        d = dae::load_model(name_or_path, set, normal_rows, allow_paths);
     } else {
         const NamedText built_in = built_in_model(name_or_path);
         d = dae::read_model(built_in.text, built_in.name, set, normal_rows);

@@ -36,11 +36,12 @@ bool is_built_in(const std::string& name);
 bool is_model_path(const std::string& name_or_path);
 
 /// Reads a model file, or a built-in model if the text is not a path (is_model_path()). `set`: changes of the
-/// form /json/pointer=VALUE; `normal_rows`: rows of all contact constraints, "": those of the model.
+/// form /json/pointer=VALUE; `normal_rows`: rows of all contact constraints, "": those of the model;
+/// `allow_paths`: a model file may name files that are not below its folder.
 /// lie::InvalidInput as in read_model() and problem(); io::UsageError if `normal_rows` is given and the model
 /// has no contact constraint.
 dae::Description named_model(const std::string& name_or_path, std::span<const std::string> set,
-                             const std::string& normal_rows);
+                             const std::string& normal_rows, bool allow_paths = false);
 
 /// Name of the output directory below out/: the name of the file without .json, or of the built-in model
 std::string short_name(const std::string& name_or_path);

@@ -26,6 +26,7 @@ struct RunOptions {
     std::vector<std::string> set;             ///< /json/pointer=VALUE
     std::string normal_rows;  ///< of contact constraints: tangent or fixed-xy; "": the model's
     bool fix_initial = false;
+    bool allow_paths = false;  ///< files that a file names need not be below its folder
 
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;

@@ -47,7 +47,7 @@ RunResult SingleRun::execute()
 
 bool SingleRun::read()
 {
-    description = named_model(options.model, options.set, options.normal_rows);
+    description = named_model(options.model, options.set, options.normal_rows, options.allow_paths);
     return true;
 }
 
@@ -82,7 +82,8 @@ void SingleRun::prepare_coupling()
 {
     const std::optional<Checkpoint>& from = earlier.from;
     if (!from) {  // an invalid start is reported before the other side writes files
-        dae::Description alone = named_model(options.model, options.set, options.normal_rows);
+        dae::Description alone =
+            named_model(options.model, options.set, options.normal_rows, options.allow_paths);
         dae::start(alone, {.fix_initial = options.fix_initial});
     }
     create_directory();

@@ -273,7 +273,8 @@ std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
     o.exclude("file", "triangles");
     const std::string path =
         o.file("file", {"Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder "
-                        "of the model file, instead of vertices and triangles. Corners of an STL file with "
+                        "of the model file and below it, unless --allow-paths is given, instead of vertices "
+                        "and triangles. Corners of an STL file with "
                         "equal coordinates become one vertex. At most 64 MiB and 200000 triangles.",
                         R"("stone.stl")", R"("minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$")"});
     const io::About about_scale = {

@@ -130,14 +130,7 @@ std::string ObjectReader::file(std::string_view key, const io::About& about)
     std::string path = text(key, about);
     if (!source.base.empty()) path = (fs::path(source.base) / path).string();
     source.files.push_back(path);
-    if (source.within.empty()) return path;
-    std::error_code error;
-    const fs::path folder = fs::weakly_canonical(source.within, error),
-                   canonical = fs::weakly_canonical(fs::absolute(path, error), error);
-    if (error ||
-        std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first != folder.end())
-        fail(key, std::string(key) + " must be below the folder of the case, " + folder.string() + ", got " +
-                      io::described(*find(key)) + "; --allow-paths accepts it");
+    require_within(key, path, "case");
     return path;
 }
 

@@ -16,7 +16,7 @@ void define_cosim(py::module_& m)
         "_cosim",
         [](const std::string& file, const std::string& output, const std::vector<std::string>& set,
            std::optional<double> end, std::optional<double> interval, bool contacts, bool reactions,
-           double checkpoint, int threads, bool fix_initial, bool force, bool resume) {
+           double checkpoint, int threads, bool fix_initial, bool force, bool resume, bool allow_paths) {
             run::CosimOptions options{.file = file};
             run::RunOptions& o = options.run;
             o.output = output;
@@ -28,6 +28,7 @@ void define_cosim(py::module_& m)
             o.fix_initial = fix_initial;
             o.force = force;
             o.resume = resume;
+            o.allow_paths = allow_paths;
             o.quiet = true;
             o.command_line = "hilda.cosim";
             if (contacts) o.outputs["--contacts"] = "";
@@ -38,7 +39,7 @@ void define_cosim(py::module_& m)
         },
         py::arg("file"), py::arg("output"), py::arg("set"), py::arg("end"), py::arg("interval"),
         py::arg("contacts"), py::arg("reactions"), py::arg("checkpoint"), py::arg("threads"),
-        py::arg("fix_initial"), py::arg("force"), py::arg("resume"));
+        py::arg("fix_initial"), py::arg("force"), py::arg("resume"), py::arg("allow_paths"));
 }
 
 }  // namespace hilda::python

@@ -33,13 +33,14 @@ struct Source {
     std::string text;    ///< of a model file; "": the model has a name
     std::string folder;  ///< of the files that the text names
     Names set;
+    bool allow_paths;  ///< of a file
 };
 
 dae::Description read(const Source& from, std::span<const std::string> changes)
 {
     Names all = from.set;
     all.insert(all.end(), changes.begin(), changes.end());
-    return from.text.empty() ? run::named_model(from.name, all, "")
+    return from.text.empty() ? run::named_model(from.name, all, "", from.allow_paths)
                              : dae::read_model(from.text, "model", all, "", from.folder);
 }
 
@@ -154,17 +155,17 @@ void define_fit(py::module_& m)
            const std::vector<Parameter>& parameters, const std::string& of_data, std::vector<double> t,
            Names columns, const Eigen::MatrixXd& values, std::vector<double> sigma,
            const std::string& integrator, std::optional<double> step,
-           const std::map<std::string, std::string>& settings, bool fix_initial, int max_iterations,
-           int jobs) {
+           const std::map<std::string, std::string>& settings, bool fix_initial, bool allow_paths,
+           int max_iterations, int jobs) {
             return fit(
-                {name, text, folder, set}, parameters,
+                {name, text, folder, set, allow_paths}, parameters,
                 {.source = of_data, .t = std::move(t), .columns = std::move(columns), .values = values},
                 std::move(sigma), integrator, step, settings, fix_initial, max_iterations, jobs);
         },
         py::arg("name"), py::arg("text"), py::arg("folder"), py::arg("set"), py::arg("parameters"),
         py::arg("source"), py::arg("t"), py::arg("columns"), py::arg("values"), py::arg("sigma"),
         py::arg("integrator"), py::arg("step"), py::arg("settings"), py::arg("fix_initial"),
-        py::arg("max_iterations"), py::arg("jobs"));
+        py::arg("allow_paths"), py::arg("max_iterations"), py::arg("jobs"));
 }
 
 }  // namespace hilda::python

@@ -160,21 +160,22 @@ void define_model(py::module_& m)
     m.def(
         "_read_named",
         [](const std::string& name, const Names& set, const Forces& forces, const Constraints& constraints,
-           bool fix_initial) {
-            return started([&] { return run::named_model(name, set, ""); }, {forces, constraints, {}},
-                           fix_initial);
+           bool fix_initial, bool allow_paths) {
+            return started([&] { return run::named_model(name, set, "", allow_paths); },
+                           {forces, constraints, {}}, fix_initial);
         },
-        py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("constraints"), py::arg("fix_initial"));
+        py::arg("name"), py::arg("set"), py::arg("forces"), py::arg("constraints"), py::arg("fix_initial"),
+        py::arg("allow_paths"));
     m.def(
         "_read_text",
         [](const std::string& text, const std::string& file, const Names& set, const std::string& folder,
-           const Forces& forces, const Constraints& constraints, const std::vector<py::object>& surfaces,
-           bool fix_initial) {
-            return started([&] { return dae::read_model(text, file, set, "", folder); },
+           const std::string& within, const Forces& forces, const Constraints& constraints,
+           const std::vector<py::object>& surfaces, bool fix_initial) {
+            return started([&] { return dae::read_model(text, file, set, "", folder, within); },
                            {forces, constraints, surfaces}, fix_initial);
         },
-        py::arg("text"), py::arg("file"), py::arg("set"), py::arg("folder"), py::arg("forces"),
-        py::arg("constraints"), py::arg("surfaces"), py::arg("fix_initial"));
+        py::arg("text"), py::arg("file"), py::arg("set"), py::arg("folder"), py::arg("within"),
+        py::arg("forces"), py::arg("constraints"), py::arg("surfaces"), py::arg("fix_initial"));
     m.def("_integrators", [] {
         py::list all;
         for (const lie::Scheme& scheme : lie::schemes()) all.append(properties(scheme));

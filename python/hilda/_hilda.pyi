@@ -72,10 +72,11 @@ _Function = Callable[[State], Any]
 _Forces = list[tuple[str, _Function, Callable[[State], float] | None]]
 _Constraints = list[tuple[str, str, str, int, _Function, _Function | None, _Function | None, _Function | None]]
 
-def _read_named(name: str, set: list[str], forces: _Forces, constraints: _Constraints, fix_initial: bool) -> _Model: ...
+def _read_named(name: str, set: list[str], forces: _Forces, constraints: _Constraints, fix_initial: bool,
+                allow_paths: bool) -> _Model: ...
 def _read_text(
-    text: str, file: str, set: list[str], folder: str, forces: _Forces, constraints: _Constraints, surfaces: list[Surface],
-    fix_initial: bool,
+    text: str, file: str, set: list[str], folder: str, within: str, forces: _Forces, constraints: _Constraints,
+    surfaces: list[Surface], fix_initial: bool,
 ) -> _Model: ...
 def _run(
     model: _Model, integrator: str | Integrator, end: float | None, step: float | None, interval: float | None,
@@ -123,11 +124,12 @@ def _fit_data(path: str, columns: list[str]) -> tuple[NDArray[float64], list[str
 def _fit(
     name: str, text: str, folder: str, set: list[str], parameters: list[tuple[str, float | None, float, float, float]],
     source: str, t: NDArray[float64], columns: list[str], values: NDArray[float64], sigma: list[float], integrator: str,
-    step: float | None, settings: dict[str, str], fix_initial: bool, max_iterations: int, jobs: int,
+    step: float | None, settings: dict[str, str], fix_initial: bool, allow_paths: bool, max_iterations: int,
+    jobs: int,
 ) -> dict[str, Any]: ...
 def _cosim(
     file: str, output: str, set: list[str], end: float | None, interval: float | None, contacts: bool, reactions: bool,
-    checkpoint: float, threads: int, fix_initial: bool, force: bool, resume: bool,
+    checkpoint: float, threads: int, fix_initial: bool, force: bool, resume: bool, allow_paths: bool,
 ) -> int: ...
 def _integrators() -> list[dict[str, Any]]: ...
 def _problems() -> list[tuple[str, str]]: ...

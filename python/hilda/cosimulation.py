@@ -22,7 +22,7 @@ _one_at_a_time = threading.Lock()  # a co-simulation has the signals and the num
 def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: dict[str, Any] | None = None,
           end: float | None = None, interval: float | None = None, contacts: bool = False, reactions: bool = False,
           checkpoint: float = 0.0, threads: int = 1, fix_initial: bool = False, force: bool = False,
-          resume: bool = False) -> StoredResult:
+          resume: bool = False, allow_paths: bool = False) -> StoredResult:
     """Simulates a mechanism and grains that act on each other, as `hilda cosim`.
 
     Args:
@@ -37,6 +37,7 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
         fix_initial: project inconsistent initial data onto the constraints.
         force: overwrite a folder that is not empty.
         resume: continue the run in the folder from its last checkpoint, also to a later end.
+        allow_paths: accept files that are not below the folder of the file that names them.
 
     Returns the result that was written. The warnings of the mechanism are SimulationWarnings as well. Other threads of Python
     run meanwhile, but no other co-simulation. Ctrl-C writes a checkpoint, with which `resume` continues, and raises
@@ -61,7 +62,7 @@ def cosim(file: str | os.PathLike[str], output: str | os.PathLike[str], *, set: 
         raise UsageError("cosim: another thread runs a co-simulation; a process has one at a time")
     try:
         code = _hilda._cosim(os.fspath(file), folder, changes, end, interval, contacts, reactions, checkpoint, threads,
-                             fix_initial, force, resume)
+                             fix_initial, force, resume, allow_paths)
     finally:
         _one_at_a_time.release()
     if code > 128:

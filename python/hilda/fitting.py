@@ -124,7 +124,7 @@ class Fit(Table):
 def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], parameters: Mapping[str, Start],
         integrator: str = "rA-dop853", *, sigma: float | Mapping[str, float] | None = None,
         columns: Sequence[str] | None = None, set: Mapping[str, Any] | None = None, folder: str | os.PathLike[str] = "",
-        fix_initial: bool = False, jobs: int = 1, max_fit_iterations: int = 100, step: float | None = None,
+        fix_initial: bool = False, allow_paths: bool = False, jobs: int = 1, max_fit_iterations: int = 100, step: float | None = None,
         **settings: Any) -> Fit:
     """Fits numbers of a model to measured values by least squares.
 
@@ -137,7 +137,7 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         integrator: its name.
         sigma: standard deviation of the data, or of each column; default: unknown, and the same for all columns.
         columns: names of the columns; default: all of the data.
-        set, folder, fix_initial: as for Model().
+        set, folder, fix_initial, allow_paths: as for Model().
         jobs: number of concurrent runs.
         max_fit_iterations: largest number of iterations of the fit.
         step: step [s] of an integrator with fixed steps.
@@ -168,7 +168,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
             directory = os.path.dirname(name)
     changes = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
     outcome = _hilda._fit(name, text, directory, changes, [_parameter(*item) for item in parameters.items()], origin, t, names,
-                          values, _sigma(sigma, names), integrator, step, chosen, fix_initial, max_fit_iterations, jobs)
+                          values, _sigma(sigma, names), integrator, step, chosen, fix_initial, allow_paths,
+                          max_fit_iterations, jobs)
     result = Fit(outcome, list(parameters), t, names, values, directory)
     if not result.converged:
         reason = next(text for text in result.warnings if text.startswith("the minimum was not reached"))

@@ -34,6 +34,7 @@ class Model:
         set: changes of the model, from JSON pointers to values: {"/bodies/0/mass": 2}.
         folder: folder of the files that a dict names by relative paths; default: the current one.
         fix_initial: project initial data that violate the constraints, instead of refusing them.
+        allow_paths: accept files that a model file names and that are not below its folder. A dict may name any file.
         **keys: keys of an empty model, such as gravity=[0, 0, -9.81], name="arm", end=2.
 
     The keys of bodies, constraints, forces and contacts are those of the model file, see
@@ -42,7 +43,8 @@ class Model:
     """
 
     def __init__(self, source: Source | None = None, *, set: Mapping[str, Any] | None = None,
-                 folder: str | os.PathLike[str] = "", fix_initial: bool = False, **keys: Any) -> None:
+                 folder: str | os.PathLike[str] = "", fix_initial: bool = False, allow_paths: bool = False,
+                 **keys: Any) -> None:
         if source is not None and keys:
             raise UsageError("Model: the keys " + ", ".join(keys) + " are for a new model, without a source")
         self._name: str | None = None
@@ -56,6 +58,8 @@ class Model:
         self._set = [f"{pointer}={json.dumps(_json(value))}" for pointer, value in (set or {}).items()]
         self._folder = os.fspath(folder)
         self._fix_initial = fix_initial
+        self._allow_paths = allow_paths
+        self._within = ""  # folder of the files of a model file that has become a dict
         self._forces: _hilda._Forces = []
         self._constraints: _hilda._Constraints = []
         self._surfaces: list[Surface] = []
@@ -143,6 +147,8 @@ class Model:
             self._data = json.loads(_hilda._text_of(self._name))
             if not self._folder and _hilda._is_path(self._name):
                 self._folder = os.path.dirname(self._name)
+            if _hilda._is_path(self._name) and not self._allow_paths:
+                self._within = os.path.dirname(os.path.abspath(self._name))
             self._name = None
         self._data.setdefault(group, []).append(_json(entry))
         self._started = None
@@ -166,10 +172,11 @@ class Model:
 
     def _read(self) -> _hilda._Model:
         if self._name is not None:
-            return _hilda._read_named(self._name, self._set, self._forces, self._constraints, self._fix_initial)
+            return _hilda._read_named(self._name, self._set, self._forces, self._constraints, self._fix_initial,
+                                      self._allow_paths)
         text = json.dumps(self._data, indent=1)
-        return _hilda._read_text(text, "model", self._set, self._folder, self._forces, self._constraints,
-                                 self._surfaces, self._fix_initial)
+        return _hilda._read_text(text, "model", self._set, self._folder, self._within, self._forces,
+                                 self._constraints, self._surfaces, self._fix_initial)
 
     @property
     def name(self) -> str:

@@ -74,14 +74,14 @@ int check_cosim(const CheckOptions& o)
         throw io::UsageError(
             "check: --fix-initial, --fix and --normal-rows are valid for models only; check " + o.model +
             " by its model");
-    const CosimFile file = read_cosim(o.model, o.set);
-    std::unique_ptr<granular::Soil> soil = local_grains(file, file.end, {.quiet = true});
+    const CosimFile file = read_cosim(o.model, o.set, o.allow_paths);
+    std::unique_ptr<granular::Soil> soil = local_grains(file, file.end, {.quiet = true}, o.allow_paths);
     soil->insert();
     const granular::Soil& grains = *soil;
     std::vector<granular::ToolStiffness> stiffness;
     soil->stiffness(stiffness);
     GrainCoupling coupling(file, std::move(soil));
-    dae::Description d = named_model(file.model, {}, "");
+    dae::Description d = named_model(file.model, {}, "", o.allow_paths);
     coupling.find_bodies(d);
     const dae::StartReport start = dae::start(d);
     coupling.analyse(*d.model);

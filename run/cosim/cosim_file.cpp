@@ -63,17 +63,23 @@ void read_keys(io::ObjectReader& o, const std::string& name, CosimFile& f)
         {"Path or address of the JSON schema, for editors. It has no effect.", R"("../cosim.schema.json")"});
     o.note("hilda_cosim", R"("const": 1)", {"Version of the format.", "1"});
     o.version("hilda_cosim");
-    f.name =
-        o.name("name",
-               {.text = "Name of the run and of its default output directory. By default that of the file.",
-                .example = R"("strike")",
-                .computed = true},
-               name);
-    f.model =
-        o.file("model", {"Path of the model of the mechanism, relative to this file.", R"("pendulum.json")"});
-    f.granular_case = o.file(
-        "case",
-        {"Path of the granular case, relative to this file. Its end is that of this file.", R"("bed.json")"});
+    f.name = o.name(
+        "name",
+        {.text = "Name of the run and of its default output directory, without /. By default that of the "
+                 "file.",
+         .example = R"("strike")",
+         .computed = true},
+        name);
+    if (f.name.find('/') != std::string::npos || f.name == "." || f.name == "..")
+        o.fail("name", "name must be the name of a directory, without /, got " + io::in_quotes(f.name));
+    f.model = o.file(
+        "model",
+        {"Path of the model of the mechanism, relative to this file. It must be below the folder of this "
+         "file, unless --allow-paths is given.",
+         R"("pendulum.json")"});
+    f.granular_case = o.file("case", {"Path of the granular case, relative to this file, as that of the "
+                                      "model. Its end is that of this file.",
+                                      R"("bed.json")"});
     f.substeps = o.count(
         "substeps",
         {"Number k of steps of the grains in a step of the mechanism: H = k h.", "10", R"("minimum": 1)"}, 1);
@@ -90,10 +96,11 @@ void read_keys(io::ObjectReader& o, const std::string& name, CosimFile& f)
 
 }  // namespace
 
-CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set)
+CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set, bool allow_paths)
 {
     io::JsonSource source(io::read_file(path, io::JsonSource::max_bytes), path);
     source.base = std::filesystem::path(path).parent_path().string();
+    if (!allow_paths) source.within = std::filesystem::absolute(path).parent_path().string();
     for (const std::string& change : set) source.set(change, "--set");
     CosimFile f{.source = source};
     io::ObjectReader o(f.source, f.source.root, "");

@@ -30,8 +30,10 @@ struct CosimFile {
     std::vector<CosimPair> pairs = {};
 };
 
-/// Reads a file. Throws io::InvalidInput with file, line, column and JSON pointer.
-CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set = {});
+/// Reads a file. The model and the case must be below its folder unless `allow_paths`. Throws
+/// io::InvalidInput with file, line, column and JSON pointer.
+CosimFile read_cosim(const std::string& path, const std::vector<std::string>& set = {},
+                     bool allow_paths = false);
 
 /// The JSON schema of co-simulation files
 io::Json cosim_schema();

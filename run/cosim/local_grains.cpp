@@ -16,13 +16,14 @@ std::vector<std::string> boundaries(const CosimFile& file)
     return names;
 }
 
-std::unique_ptr<granular::Soil> local_grains(const CosimFile& file, double end, granular::RunOptions options)
+std::unique_ptr<granular::Soil> local_grains(const CosimFile& file, double end, granular::RunOptions options,
+                                             bool allow_paths)
 {
     options.file = file.granular_case;
     options.provenance = {{"program", "hilda cosim"}};
     granular::Environment here;
     here.settings = {{"/end=" + io::shortest(end)}};
-    here.folder = std::filesystem::absolute(file.granular_case).parent_path().string();
+    if (!allow_paths) here.folder = std::filesystem::absolute(file.granular_case).parent_path().string();
     const std::string text = io::read_file(file.granular_case, io::JsonSource::max_bytes);
     granular::Continuation run = granular::read_run(options, text, here);
     options.provenance["inputs"] = granular::inputs_of(run.c, options.file);

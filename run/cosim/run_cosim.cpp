@@ -34,7 +34,9 @@ std::unique_ptr<granular::Exchange> grains_here(const CosimFile& file, double en
                          .verbose = o.verbose,
                          .force = o.force,
                          .resume = o.resume,
-                         .strict = o.strict});
+                         .accept_step = o.accept_step,
+                         .strict = o.strict},
+                        o.allow_paths);
 }
 
 /// The grains in a process of hilda-granular
@@ -53,7 +55,8 @@ std::unique_ptr<granular::Exchange> grains_of_process(const CosimFile& file, dou
                                       {o.verbose, "--verbose"},
                                       {o.force, "--force"},
                                       {o.resume, "--resume"},
-                                      {o.strict, "--strict"}})
+                                      {o.strict, "--strict"},
+                                      {o.allow_paths, "--allow-paths"}})
         if (given) arguments.emplace_back(name);
     return start_grains(arguments, boundaries(file));
 }
@@ -84,7 +87,7 @@ int run_rank(const CosimOptions& options)
     const bool ranks = options.transport == "mpi", first = !ranks || rank_of_environment() == 0;
     // Before anything that can throw: its destructor ends the other rank.
     std::unique_ptr<granular::Channel> channel = ranks ? channel_of_ranks() : nullptr;
-    const CosimFile file = read_cosim(options.file, o.set);
+    const CosimFile file = read_cosim(options.file, o.set, o.allow_paths);
     o.set.clear();
     if (o.output.empty()) o.output = "out/" + file.name;
     const double end = o.end.value_or(file.end);

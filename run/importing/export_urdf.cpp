@@ -264,10 +264,13 @@ std::string urdf_text(const dae::Description& model, std::vector<std::string>& l
 
 int export_model(const ExportOptions& options)
 {
-    dae::Description d = named_model(options.model, {}, "");
+    dae::Description d = named_model(options.model, {}, "", options.allow_paths);
     dae::start(d);
     std::vector<std::string> left_out;
     const std::string text = urdf_text(d, left_out);
+    if (options.output.empty() && d.name.find('/') != std::string::npos)
+        throw io::InvalidInput("export: the name of the model, " + io::in_quotes(d.name) +
+                               ", contains a /; --output gives the name of the file");
     const std::string output = options.output.empty() ? d.name + ".urdf" : options.output;
     std::error_code error;
     if (std::filesystem::exists(output, error) && !options.force)

@@ -22,9 +22,10 @@ namespace hilda::run {
 std::string urdf_text(const dae::Description& model, std::vector<std::string>& left_out);
 
 struct ExportOptions {
-    std::string model;   ///< name of a built-in model, or path of a model file
-    std::string output;  ///< the URDF file; empty: NAME.urdf
-    bool force = false;  ///< replace `output`
+    std::string model;         ///< name of a built-in model, or path of a model file
+    std::string output;        ///< the URDF file; empty: NAME.urdf
+    bool force = false;        ///< replace `output`
+    bool allow_paths = false;  ///< files that the model names need not be below its folder
 };
 
 /// Writes the file and prints its name. Returns the exit code. Throws what urdf_text() throws, io::IoError.

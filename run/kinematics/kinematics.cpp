@@ -158,7 +158,7 @@ void print(const dae::Description& d, const dae::StartReport& start, const Reach
 int run_kinematics(const KinematicsOptions& options)
 {
     const std::string command = name_of(options);
-    dae::Description d = named_model(options.model, options.set, "");
+    dae::Description d = named_model(options.model, options.set, "", options.allow_paths);
     if (!options.motion.empty()) d = with_motion(d, options.motion);
     // The velocities of the model do not belong to a motion of a file.
     const dae::StartReport start =

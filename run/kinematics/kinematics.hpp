@@ -18,6 +18,7 @@ struct KinematicsOptions {
     std::optional<double> end, interval;  ///< [s]; defaults: end of the model, end/1000
     std::vector<std::string> set;         ///< /json/pointer=VALUE
     bool fix_initial = false;
+    bool allow_paths = false;  ///< files that a file names need not be below its folder
 
     std::string output;  ///< directory; "": out/NAME
     bool force = false;

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 namespace hilda::studies {
 
 namespace {
@@ -16,8 +18,11 @@ namespace {
 dae::Description read(const Problem& problem, const std::vector<std::string>& set,
                       const StudyOptions& options)
 {
+    const std::string within = problem.file.empty() || options.allow_paths
+                                   ? ""
+                                   : std::filesystem::absolute(problem.file).parent_path().string();
     return dae::read_model(problem.model, problem.file.empty() ? problem.name : problem.file, set,
-                           options.normal_rows, problem.folder);
+                           options.normal_rows, problem.folder, within);
 }
 
 }  // namespace

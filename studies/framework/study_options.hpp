@@ -31,6 +31,7 @@ struct StudyOptions {
     std::vector<int> bars;           ///< numbers of bars of study scaling, ascending
     std::optional<double> end;       ///< [s]
     std::vector<std::string> set;    ///< /json/pointer=VALUE
+    bool allow_paths = false;        ///< files that a file names need not be below its folder
     bool fix_initial = false;        ///< project inconsistent initial data onto the constraints
     std::vector<std::string> sweep;  ///< /json/pointer=VALUES of study sweep
     std::string observable;          ///< column of study sweep; "": that of the problem

@@ -285,7 +285,8 @@ void write_projected(const dae::Description& d, const std::string& model, const 
 int check_model(const run::CheckOptions& options)
 {
     const bool fix_initial = options.fix_initial || !options.write.empty();
-    dae::Description d = run::named_model(options.model, options.set, options.normal_rows);
+    dae::Description d =
+        run::named_model(options.model, options.set, options.normal_rows, options.allow_paths);
     const lie::State given = d.x;
     const dae::StartReport start = dae::start(d, {.fix_initial = fix_initial});
     for (std::string& w : contact::soft_friction_warnings(*d.model, d.x)) d.warnings.push_back(std::move(w));

@@ -79,6 +79,16 @@ void add_normal_rows(CLI::App& command, const std::string& default_rows, std::st
           assign(to, normal_rows));
 }
 
+std::string help_of_allow_paths(const std::string& of)
+{
+    return "read the files that " + of + " names also if they are not below its folder";
+}
+
+void add_allow_paths(CLI::App& command, const std::string& of, bool& to)
+{
+    command.add_flag("--allow-paths", to, help_of_allow_paths(of));
+}
+
 std::string help_of_fix_initial(const std::string& and_more)
 {
     return "project inconsistent initial data onto the constraints" + and_more;

@@ -60,6 +60,8 @@ void add_model(CLI::App& command, std::string& to);
 /// Adds --set for entries of `what`, such as "the model".
 void add_set(CLI::App& command, const std::string& what, std::vector<std::string>& to);
 void add_normal_rows(CLI::App& command, const std::string& default_rows, std::string& to);
+/// Adds --allow-paths; `of` is what names the files, such as "the model".
+void add_allow_paths(CLI::App& command, const std::string& of, bool& to);
 /// Adds --fix-initial; `and_more` is the end of the help text.
 void add_fix_initial(CLI::App& command, const std::string& and_more, bool& to);
 /// Adds --output; `accepted_by` are the options that accept a directory that is not empty.
@@ -72,6 +74,7 @@ void add_no_plot(CLI::App& command, const std::string& what, bool& plot);
 // The help of these options
 std::string help_of_set(const std::string& what);
 std::string help_of_normal_rows(const std::string& default_rows);
+std::string help_of_allow_paths(const std::string& of);
 std::string help_of_fix_initial(const std::string& and_more);
 std::string help_of_output(const std::string& accepted_by, const std::string& default_directory);
 std::string help_of_figure_format();

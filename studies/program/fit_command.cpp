@@ -165,7 +165,7 @@ run::FitProblem problem_of(const FitOptions& options)
                                 [&options](std::span<const std::string> changes) {
                                     std::vector<std::string> all = options.set;
                                     all.insert(all.end(), changes.begin(), changes.end());
-                                    return run::named_model(options.model, all, "");
+                                    return run::named_model(options.model, all, "", options.allow_paths);
                                 },
                             .parameters = {},
                             .data = {},

@@ -22,6 +22,7 @@ struct FitOptions {
     lie::Settings settings;
     std::vector<std::string> given_settings;  ///< options of `settings` that were given
     bool fix_initial = false;
+    bool allow_paths = false;  ///< files that a file names need not be below its folder
     int max_fit_iterations = 100;
     int jobs = 0;  ///< 0: number of cores
     std::string output;

@@ -58,6 +58,7 @@ void add_run_options(CLI::App& c, RunArguments& to)
     add_set(c, "the model", o.set);
     add_normal_rows(c, of_the_model, o.normal_rows);
     add_fix_initial(c, "", o.fix_initial);
+    add_allow_paths(c, "the model", o.allow_paths);
     add_output(c, "--force or --resume", "out/NAME", o.output);
     c.add_flag("--force", o.force,
                "overwrite an output directory that is not empty; accept a step above the stability limit");
@@ -111,6 +112,7 @@ void add_cosim_options(CLI::App& c, run::CosimOptions& to)
           assign(o.interval, nonnegative_number));
     add_set(c, "the co-simulation file", o.set);
     add_fix_initial(c, "", o.fix_initial);
+    add_allow_paths(c, "a file", o.allow_paths);
     add_output(c, "--force or --resume", "out/NAME", o.output);
     c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
     c.add_flag(
@@ -142,6 +144,7 @@ void add_kinematics_options(CLI::App& c, run::KinematicsOptions& o)
           assign(o.interval, positive_number));
     add_set(c, "the model", o.set);
     add_fix_initial(c, "", o.fix_initial);
+    add_allow_paths(c, "the model", o.allow_paths);
     add_output(c, "--force", "out/NAME", o.output);
     c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
     io::add_sink_options<run::RunSetup>(c, o.outputs);
@@ -171,6 +174,7 @@ void add_check_options(CLI::App& c, run::CheckOptions& o)
     value(c, "--fix", "FILE",
           "as --fix-initial, and write the model with the projected initial data to this file",
           assign(o.write, io::path));
+    add_allow_paths(c, "the model", o.allow_paths);
     c.add_flag("--json", o.json, "print the result as JSON");
     c.add_flag("--quiet", o.quiet, "print warnings only; the exit code is the result");
 }
@@ -197,6 +201,7 @@ void add_export_options(CLI::App& c, run::ExportOptions& to)
     value(c, "--output", "FILE", "the URDF file; default: NAME.urdf in the current directory",
           assign(to.output, io::path));
     c.add_flag("--force", to.force, "replace a file that exists");
+    add_allow_paths(c, "the model", to.allow_paths);
 }
 
 }  // namespace hilda::studies

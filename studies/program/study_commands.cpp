@@ -53,6 +53,7 @@ void add_fit_options(CLI::App& c, FitOptions& to)
     add_settings(c, to.settings, to.given_settings);
     add_set(c, "the model", to.set);
     add_fix_initial(c, "", to.fix_initial);
+    add_allow_paths(c, "the model", to.allow_paths);
     value(c, "--max-fit-iterations", "N", "largest number of iterations of the fit (default 100)",
           assign(to.max_fit_iterations, positive_count));
     add_output(c, "--force", "out/fit-NAME", to.output);

@@ -192,7 +192,11 @@ std::vector<StudyOption> options_of_selection()
                  &O::format, run::table_format)),
         with("--integrator",
              flag({.name = "--fix-initial", .help = help_of_fix_initial(""), .scope = numerical},
-                  &O::fix_initial))};
+                  &O::fix_initial)),
+        with(
+            "--problem",
+            flag({.name = "--allow-paths", .help = help_of_allow_paths("a model file"), .scope = Scope::none},
+                 &O::allow_paths))};
 }
 
 /// Reference solution, parameters of experiments, criteria and the output directory
@@ -365,7 +369,7 @@ run::FinishedJobs::Identity identity_of_jobs(const Study& study, const StudyArgu
         if (run::is_model_path(problem) && std::filesystem::is_regular_file(problem, error)) {
             std::string text = io::read_file(problem, most);
             try {  // the canonical form contains the meshes that the model names
-                text += run::named_model(problem, o.set, "").text;
+                text += run::named_model(problem, o.set, "", o.allow_paths).text;
             } catch (const io::InvalidInput&) {
                 // reported when the study reads the model
             }

@@ -6,6 +6,7 @@
 #include "io/files.hpp"
 #include "io/message.hpp"
 #include "io/module.hpp"
+#include "run/importing/xml_scan.hpp"
 
 #include <fmt/format.h>
 
@@ -53,11 +54,28 @@ const Format& format_of(const std::string& file)
         "{}: has the root element '{}'; expected robot (URDF) or mujoco (MJCF)", file, root.substr(0, 40)));
 }
 
+/// The model, whose messages name the bodies and joints of the file
+std::pair<dae::Description, dae::StartReport> started(const std::string& text, const std::string& file)
+{
+    try {
+        dae::Description description = dae::read_model(text, "imported model");
+        dae::StartReport start = dae::start(description);
+        return {std::move(description), std::move(start)};
+    } catch (const io::InvalidInput& error) {
+        const std::string message = message_about(text, error.what());
+        throw io::InvalidInput(file + ": " + message +
+                               (message.find("no principal moment of inertia may exceed") == message.npos
+                                    ? ""
+                                    : "; --balance-inertia replaces the moments by their mean"));
+    }
+}
+
 }  // namespace
 
 int import_model(const ImportOptions& options)
 {
     const Format& format = format_of(options.file);
+    check_robot_file(options.file);
     void* const symbol = io::module_symbol("import",
                                            {.name = format.module,
                                             .library_folder = HILDA_LIBRARY_FOLDER,
@@ -71,9 +89,9 @@ int import_model(const ImportOptions& options)
                                                                                  options.free_base, model);
     const std::string output =
         options.output.empty() ? fs::path(options.file).stem().string() + ".json" : options.output;
+    model.balances_inertia = options.balances_inertia;
     const std::string text = model_text(model, options.file);
-    dae::Description description = dae::read_model(text, output);
-    const dae::StartReport start = dae::start(description);
+    const auto [description, start] = started(text, options.file);
     std::error_code error;
     if (fs::exists(output, error) && !options.force)
         throw io::InvalidInput(output + ": the file exists; --force replaces it");

@@ -10,10 +10,11 @@
 namespace hilda::run {
 
 struct ImportOptions {
-    std::string file;        ///< of the type of its root element, robot (URDF) or mujoco (MJCF)
-    std::string output;      ///< the model file; empty: NAME.json, with the name of `file`
-    bool free_base = false;  ///< the first body without a joint is free; else it is fixed
-    bool force = false;      ///< replace `output`
+    std::string file;               ///< of the type of its root element, robot (URDF) or mujoco (MJCF)
+    std::string output;             ///< the model file; empty: NAME.json, with the name of `file`
+    bool free_base = false;         ///< the first body without a joint is free; else it is fixed
+    bool balances_inertia = false;  ///< see ImportedModel
+    bool force = false;             ///< replace `output`
 };
 
 /// Writes the model file, and prints what it has and what was not imported. Returns the exit code.

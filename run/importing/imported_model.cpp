@@ -2,9 +2,10 @@
 #include "run/importing/imported_model.hpp"
 
 #include "io/error.hpp"
-#include "io/json.hpp"
+#include "io/json_source.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -41,20 +42,14 @@ bool are_perpendicular(const Vec3& a, const Vec3& b) { return std::abs(a.dot(b))
 
 class ModelWriter {
 public:
-    ModelWriter(const ImportedModel& from, const std::string& file)
-        : from(from), file(file), body(from.bodies)
-    {}
+    ModelWriter(ImportedModel& from, const std::string& file) : from(from), file(file), body(from.bodies) {}
 
     std::string text()
     {
         weld();
         io::Json all = {{"hilda_model", 1L}, {"name", from.name}, {"gravity", list(from.gravity)}};
-        if (!from.warnings.empty()) {
-            std::string note = "Not imported:";
-            for (const std::string& warning : from.warnings) note += ' ' + warning + ';';
-            note.back() = '.';
-            all["note"] = note;
-        }
+        if (from.balances_inertia) balance();
+        if (!from.warnings.empty()) all["note"] = note(from.warnings);
         all["bodies"] = io::Json::array();
         for (size_t n = 0; n < body.size(); ++n)
             if (moves(n)) all["bodies"].push_back(body_json(n));
@@ -73,6 +68,50 @@ public:
     }
 
 private:
+    /// The warnings, or the numbers of those of a kind if they are too long for a key of a model file
+    static std::string note(const std::vector<std::string>& warnings)
+    {
+        constexpr size_t most = 4000;  // [byte]
+        const auto listed = [](const std::vector<std::string>& all) {
+            std::string text = "Not imported:";
+            for (const std::string& one : all) text += ' ' + one + ';';
+            text.back() = '.';
+            return text;
+        };
+        if (std::string text = listed(warnings); text.size() <= most) return text;
+        std::vector<std::string> kinds, counts;
+        std::map<std::string, long> number;
+        for (const std::string& warning : warnings) {
+            const std::string kind = warning.substr(0, warning.find(" '"));
+            if (number[kind]++ == 0) kinds.push_back(kind);
+        }
+        for (const std::string& kind : kinds) counts.push_back(fmt::format("{} ({})", kind, number[kind]));
+        std::string text = listed(counts);
+        while (text.size() > most) {  // many kinds
+            counts.pop_back();
+            text = listed(counts) + " And others.";
+        }
+        return text;
+    }
+
+    /// Replaces principal moments that no body has by their mean, as the option balanceinertia of MuJoCo
+    /// does.
+    void balance()
+    {
+        for (size_t n = 0; n < body.size(); ++n) {
+            if (!moves(n)) continue;
+            const Mat3 J = 0.5 * (body[n].J_bar + body[n].J_bar.transpose());
+            const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(J, Eigen::EigenvaluesOnly).eigenvalues();
+            if (moments[0] + moments[1] >= moments[2]) continue;
+            from.warnings.push_back(
+                fmt::format("inertia of body '{}', whose principal moments {:.4g}, {:.4g} and {:.4g} violate "
+                            "the triangle "
+                            "inequality and are replaced by their mean",
+                            body[n].name, moments[0], moments[1], moments[2]));
+            body[n].J_bar = moments.mean() * Mat3::Identity();
+        }
+    }
+
     [[noreturn]] void refuse(const std::string& what, const std::string& why) const
     {
         throw io::InvalidInput(file + ": " + what + ": " + why);
@@ -260,7 +299,7 @@ private:
         }
     }
 
-    const ImportedModel& from;
+    ImportedModel& from;
     const std::string& file;
     std::vector<ImportedBody> body;
     std::vector<int> owners;
@@ -270,9 +309,37 @@ private:
 
 }  // namespace
 
-std::string model_text(const ImportedModel& from, const std::string& file)
+std::string model_text(ImportedModel& from, const std::string& file)
 {
     return ModelWriter(from, file).text();
+}
+
+std::string message_about(const std::string& text, const std::string& message)
+{
+    const size_t begin = message.find(" (/"), end = message.find("): ");
+    if (begin == message.npos || end == message.npos || end < begin) return message;
+    const std::string pointer = message.substr(begin + 2, end - begin - 2);
+    const size_t group_end = std::min(pointer.find('/', 1), pointer.size()),
+                 number_end = std::min(pointer.find('/', group_end + 1), pointer.size());
+    const std::string group = pointer.substr(1, group_end - 1);
+    const std::string number =
+        pointer.substr(std::min(group_end + 1, pointer.size()), number_end - group_end - 1);
+    const io::JsonSource model(text, "model", text.size() + 1);
+    const io::Json::Member* const entries = model.root.member(group);
+    const bool is_number =
+        !number.empty() && number.size() < 9 && number.find_first_not_of("0123456789") == number.npos;
+    if (entries == nullptr || !is_number || std::stoul(number) >= entries->value.size()) return message;
+    const io::Json::Member* const name = entries->value.at(std::stoul(number)).member("name");
+    const std::string kind = group == "bodies"        ? "body"
+                             : group == "constraints" ? "joint"
+                             : group == "forces"      ? "force"
+                                                      : group;
+    const std::string key = pointer.substr(std::min(number_end + 1, pointer.size()));
+    const std::string of = fmt::format(
+        "{} '{}'", kind, name != nullptr && name->value.string() != nullptr ? *name->value.string() : number);
+    std::string reason = message.substr(end + 3);
+    if (reason.starts_with(of + ": ")) reason.erase(0, of.size() + 2);
+    return of + (key.empty() ? "" : " (" + key + ")") + ": " + reason;
 }
 
 }  // namespace hilda::run

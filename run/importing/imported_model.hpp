@@ -46,6 +46,8 @@ struct ImportedModel {
     lie::Vec3 gravity{0, 0, -9.81};  ///< [m/s²]
     std::vector<ImportedBody> bodies;
     std::vector<ImportedLoop> loops;
+    /// Replace principal moments of inertia that violate the triangle inequality by their mean.
+    bool balances_inertia = false;
     std::vector<std::string> warnings;  ///< what the model file does not have
 };
 
@@ -55,6 +57,13 @@ struct ImportedModel {
 ///
 /// Throws io::InvalidInput "FILE: ..." for other combinations, for springs and dampers of joints without a
 /// single axis, and for bodies that move and have no mass or inertia.
-std::string model_text(const ImportedModel& from, const std::string& file);
+///
+/// The key `note` lists the warnings. Those of more than 4000 bytes are counted by kind, "limits of joint
+/// (45)".
+std::string model_text(ImportedModel& from, const std::string& file);
+
+/// A message about the model text: its place "PATH:LINE:COL (/bodies/3/mass)" in a file that is not written
+/// is replaced by the body or joint, "body 'arm' (mass)". Other messages are returned as they are.
+std::string message_about(const std::string& text, const std::string& message);
 
 }  // namespace hilda::run

@@ -36,7 +36,9 @@ public:
             std::string text = message.data();
             for (char& c : text)
                 if (c == '\n') c = ' ';
-            refuse(text.substr(0, text.find_last_not_of(' ') + 1));
+            // Elements of later versions are unknown to it.
+            refuse("MuJoCo " + std::string(mj_versionString()) + ": " +
+                   text.substr(0, text.find_last_not_of(' ') + 1));
         }
         data = {mj_makeData(model.get()), mj_deleteData};
         mj_kinematics(model.get(), data.get());

@@ -161,14 +161,15 @@ private:
         body.joints.push_back(one);
     }
 
-    void check_mesh(const urdf::Link& link, const urdf::GeometrySharedPtr& geometry) const
+    /// The geometry is not imported: a mesh that is missing does not change the model.
+    void check_mesh(const urdf::Link& link, const urdf::GeometrySharedPtr& geometry)
     {
         if (geometry == nullptr || geometry->type != urdf::Geometry::MESH) return;
         const std::string& name = dynamic_cast<const urdf::Mesh&>(*geometry).filename;
         if (name.find("://") != std::string::npos) return;  // the place of a package is not known
         std::error_code error;
         if (!fs::exists(fs::path(file).parent_path() / name, error))
-            refuse("link '" + link.name + "': the mesh " + name + " does not exist");
+            to.warnings.push_back("mesh " + name + " of link '" + link.name + "', which does not exist");
     }
 
     const std::string file;

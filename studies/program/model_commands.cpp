@@ -190,6 +190,9 @@ void add_import_options(CLI::App& c, run::ImportOptions& to)
               static const std::string words[] = {"fixed", "free"};
               return io::one_of(option, text, words) == "free";
           }));
+    c.add_flag(
+        "--balance-inertia", to.balances_inertia,
+        "replace principal moments of inertia that no body has, a + b < c, by their mean, as MuJoCo does");
     c.add_flag("--force", to.force, "replace a file that exists");
 }
 

@@ -9,6 +9,7 @@ import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -222,8 +223,6 @@ class Import(unittest.TestCase):
                      '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
                      '<joint name="k" type="continuous"><parent link="b"/><child link="a"/></joint></robot>', "root|loop|tree")
         self.refused("<robot name='r'><link name='world'/>" + link + joint.replace("continuous", "spherical") + "</robot>", "type .*spherical|spherical")
-        mesh = '<link name="a">' + INERTIA + '<visual><geometry><mesh filename="none.stl"/></geometry></visual></link>'
-        self.refused("<robot name='r'><link name='world'/>" + mesh + joint + "</robot>", "link 'a': the mesh none.stl does not exist")
         mimic = joint.replace("</joint>", '<mimic joint="j"/></joint>')
         self.refused("<robot name='r'><link name='world'/>" + link + mimic + "</robot>", "joint 'j': mimic is not supported")
         self.refused("<robot name='r'>" + link + "</robot>", "has no body that moves")
@@ -235,13 +234,70 @@ class Import(unittest.TestCase):
             self.refused("<robot name='r'><link name='world'/>" + link + joint + f"<link name='b'>{INERTIA.replace(right, wrong)}</link>" +
                          weld + "</robot>", r"[Ii]nertial.*Link \[b\]")
 
+    def robot(self, count, more=""):
+        """A chain of links with joints that have limits and friction"""
+        parts = ['<robot name="arm"><link name="link_0"/>']
+        for k in range(count):
+            parts.append(f'<link name="link_{k + 1}">{INERTIA}{more}</link><joint name="left_middle_finger_joint_{k}" type="revolute">'
+                         f'<parent link="link_{k}"/><child link="link_{k + 1}"/><axis xyz="0 1 0"/><origin xyz="0 0 0.1"/>'
+                         '<limit lower="-1.5" upper="1.5" effort="40" velocity="3"/><dynamics friction="0.2"/></joint>')
+        return "".join(parts) + "</robot>"
+
+    def test_many_warnings(self):
+        """The note of the model lists the warnings, or counts those of a kind if they are too long."""
+        model, said = self.imported(self.written(self.robot(20), "arm.urdf"))
+        self.assertIn("limits of joint 'left_middle_finger_joint_19'", model["note"])
+        model, said = self.imported(self.written(self.robot(95), "arm.urdf"))
+        self.assertIn("95 bodies with 95 degrees of freedom", said)
+        self.assertIn("not imported: limits of joint 'left_middle_finger_joint_94'", said)
+        self.assertEqual(model["note"], "Not imported: friction of joint (95); limits of joint (95).")
+
+    def test_missing_meshes(self):
+        visual = '<visual><geometry><mesh filename="meshes/arm.stl"/></geometry></visual>'
+        model, said = self.imported(self.written(self.robot(1, visual), "arm.urdf"))
+        self.assertIn("not imported: mesh meshes/arm.stl of link 'link_1', which does not exist", said)
+        self.assertIn("mesh meshes/arm.stl of link 'link_1'", model["note"])
+
+    def test_inertia_of_no_body(self):
+        inertia = INERTIA.replace('ixx="1" iyy="1" izz="1"', 'ixx="1.486e-06" iyy="2e-07" izz="8.31e-07"')
+        text = self.robot(1).replace(INERTIA, inertia)
+        self.refused(text, r"model.xml: body 'link_1' \(inertia\): .*no principal moment of inertia may exceed the sum of the "
+                     "other two.*; --balance-inertia replaces the moments by their mean")
+        model, said = self.imported(self.written(text), "--balance-inertia")
+        self.assertRegex(said, "not imported: inertia of body 'link_1', whose principal moments .* are replaced by their mean")
+        np.testing.assert_allclose(model["bodies"][0]["inertia"], [8.39e-07] * 3, rtol=1e-9)
+
+    def test_hostile_files(self):
+        """Each of them is refused with one line at once."""
+        begin = time.monotonic()
+        self.refused(self.robot(20000), "behind a chain of [0-9]+ links, the limit is 1000")
+        self.refused("<robot name='r'>" + "<a>" * 200000 + "</a>" * 200000 + "</robot>", 'model.xml:1: the element "a" is at level 201')
+        self.refused("<mujoco><worldbody>" + '<body><joint/><geom size="1"/>' * 100000 + "</body>" * 100000 + "</worldbody></mujoco>",
+                     "at level 201 of the nesting, the limit is 200")
+        composite = '<composite type="grid" count="2000 2000 1" spacing="0.1"><geom size="0.01"/></composite>'
+        self.refused(f'<mujoco><worldbody>\n<body name="a">{composite}</body></worldbody></mujoco>',
+                     "model.xml:2: the composite has 4e[+]06 bodies, the limit is 10000")
+        os.mkfifo(self.path("pipe.xml"))
+        self.refused('<mujoco>\n\n<include file="pipe.xml"/></mujoco>', 'model.xml:3: "pipe.xml" is not a regular file')
+        self.written('<mujoco><include file="pipe.xml"/></mujoco>', "other.xml")
+        self.assertIn('other.xml:1: "pipe.xml" is not a regular file',
+                      run(HILDA, "import", self.written('<mujoco><include file="other.xml"/></mujoco>'), expected=3))
+        os.mkdir(self.path("meshes"))
+        os.mkfifo(self.path("meshes/pipe.stl"))
+        self.refused('<mujoco><compiler meshdir="meshes"/><asset><mesh name="m" file="pipe.stl"/></asset></mujoco>', "pipe.stl. is not a regular file")
+        visual = '<visual><geometry><mesh filename="meshes/pipe.stl"/></geometry></visual>'
+        self.refused(self.robot(1, visual), "meshes/pipe.stl. is not a regular file")
+        self.assertLess(time.monotonic() - begin, 20)
+        _, said = self.imported(self.written("<!-- <a><b> --><robot name='r'><![CDATA[<composite count='1e9'/>]]>" + self.robot(300)[18:]))
+        self.assertIn("300 bodies", said)
+
     def test_mjcf_refusals(self):
         def body(inside):
             return f'<mujoco><worldbody><body name="a">{inside}<geom type="sphere" size="0.1"/></body></worldbody></mujoco>'
         self.refused(body('<joint name="j" armature="0.1"/>'), "joint 'j': armature is not supported")
         self.refused(body('<joint axis="1 0 0"/><joint axis="1 1 0"/>'), "body 'a': its joints .hinge hinge. have no counterpart")
         self.refused(body('<joint name="j" type="ball" damping="1"/>'), "joint 'j': stiffness and damping")
-        self.refused(body("<joint").replace("</mujoco>", ""), "model.xml: ")
+        self.refused(body("<joint").replace("</mujoco>", ""), "model.xml: MuJoCo [0-9.]+: ")
         self.refused(body("<joint/>").replace("<worldbody>", '<option density="1.2"/><worldbody>'), "medium")
         self.refused(body("<joint/>").replace('type="sphere" size="0.1"', 'type="mesh" mesh="m"')
                      .replace("<worldbody>", '<asset><mesh name="m" file="none.stl"/></asset><worldbody>'), "none.stl")

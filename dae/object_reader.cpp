@@ -98,8 +98,8 @@ Mat3 read_orientation(ObjectReader& o, const AboutOrientation& about)
         A = o.matrix("A");
         if (const double error = lie::orthogonality_error(A); !(error <= orientation_tolerance))
             o.fail("A", deviation_message("A must be a rotation matrix: |A^T A - I| must be 0", error));
-        if (A.determinant() < 0) o.fail("A", "A must be a rotation matrix, got a reflection (det A = -1)");
-        if (lie::orthogonality_error(A) > exact_rotation) A = lie::nearest_rotation(A);
+        if (!(A.determinant() > 0)) o.fail("A", "A must be a rotation matrix, got a reflection (det A = -1)");
+        if (!(lie::orthogonality_error(A) <= exact_rotation)) A = lie::nearest_rotation(A);
     } else if (o.has("p")) {
         const std::vector<double> e = o.numbers("p", 4);
         const lie::Vec4 p(e[0], e[1], e[2], e[3]);

@@ -100,7 +100,7 @@ void check_redundant_row(const Model& model, const Model::Row& row, const State&
         acceleration_scale = std::max({acceleration_scale, body.rddot.norm(), body.omegadot_bar.norm()});
     }
     const auto check = [&](const char* level, double residual, double scale) {
-        if (std::abs(residual) > redundancy_tolerance * scale)
+        if (!(std::abs(residual) <= redundancy_tolerance * scale))
             throw ConstraintError(model.name_of(row) + ": contradicts the " +
                                       (model.keep_redundant ? "other constraints" : "constraints before it") +
                                       " in " + level + ", residual " + number(residual) + ", at most " +
@@ -293,7 +293,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                                   model.all_rows()[position.row].constraint);
         const Violation v = violation(model, model.all_rows()[position.row], x);
         report.position_violation = number(v.value) + ' ' + v.unit;
-        if (!options.fix_initial && position.value > options.tolerance)
+        if (!options.fix_initial && !(position.value <= options.tolerance))
             throw ConstraintError("the initial positions violate " + report.worst_position + " by " +
                                       report.position_violation + ", more than " + number(options.tolerance) +
                                       "; use --fix-initial to project them onto the constraints",

@@ -243,6 +243,36 @@ std::set<std::string> tracked_top_level()
     return top;
 }
 
+std::vector<std::string> lines_of(const fs::path& file)
+{
+    std::vector<std::string> all;
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+}
+
+/// Whether a line refuses a deviation by a comparison that NaN does not satisfy: `if (error > limit) fail()`
+/// in place of `if (!(error <= limit)) fail()`. The refusal is on the same line or on the next one.
+bool accepts_nan(const std::string& line, const std::string& next)
+{
+    static const std::regex test(
+        R"(^\s*if \(([^!]*(norm\(\)|determinant\(\)|residual|tolerance|cosine|deviation|squaredNorm\(\))[^!]* (<|>|<=|>=) [^!]*|)"
+        R"([^!]* (<|>|<=|>=) [^!]*(norm\(\)|determinant\(\)|tolerance)[^!]*)\)(.*)$)");
+    static const std::regex refusal(
+        R"(^\s*(throw|return )?\s*(([\w:.]+::|\w+\.)?(reject|refuse\w*|fail\w*)\(|[\w:]*(Error|Input|Failure|NonFinite)[({]).*)");
+    std::smatch found;
+    if (!std::regex_match(line, found, test)) return false;
+    size_t depth = 0, end = line.find("if (") + 3;
+    do {
+        depth += line[end] == '(' ? 1 : 0;
+        depth -= line[end] == ')' ? 1 : 0;
+    } while (++end < line.size() && depth > 0);
+    const std::string condition = line.substr(0, end) + " x";
+    const std::string same = line.substr(end);
+    if (!std::regex_match(condition, test)) return false;
+    return std::regex_match(same.find_first_not_of(" {") == std::string::npos ? next : same, refusal);
+}
+
 }  // namespace
 
 TEST_CASE("include_error finds forbidden includes between rooms", "[house]")
@@ -379,6 +409,34 @@ TEST_CASE("comments are wrapped at 110 columns", "[house]")
         for (int number = 1; std::getline(in, line); ++number)
             if (columns(line) > 110 && std::regex_match(line, comment))
                 FAIL_CHECK(p.generic_string() << ":" << number << ": " << columns(line) << " columns");
+    }
+}
+
+TEST_CASE("accepts_nan finds refusals that a number that is not finite passes", "[house]")
+{
+    CHECK(accepts_nan("    if (cosine < 1 - 1e-6)", "        lie::reject(type, \"parallel\");"));
+    CHECK(accepts_nan("    if (is_new && residual.value > options.tolerance)",
+                      "        throw ConstraintError(text);"));
+    CHECK(accepts_nan("    if (A.determinant() < 0) o.fail(\"A\", \"a reflection\");", ""));
+    CHECK(accepts_nan("    if ((a - b).norm() >= 1e-9 * b.norm()) refuse(\"b\");", ""));
+    CHECK_FALSE(accepts_nan("    if (!(cosine >= 1 - 1e-6))", "        lie::reject(type, \"parallel\");"));
+    CHECK_FALSE(accepts_nan("    if (residual < tolerance) return x;", "    throw NoConvergence();"));
+    CHECK_FALSE(accepts_nan("    if (!error && size > max_bytes)", "        throw InvalidInput(path);"));
+    CHECK_FALSE(accepts_nan("    if (cells.size() > most) fail();", ""));
+}
+
+TEST_CASE("a refusal of a deviation refuses NaN as well", "[house]")
+{
+    for (const fs::path& p : paths_in_rooms()) {
+        const std::string extension = p.extension().string();
+        if ((extension != ".cpp" && extension != ".hpp") || p.generic_string().starts_with("tests/"))
+            continue;
+        const std::vector<std::string> lines = lines_of(root / p);
+        for (size_t k = 0; k < lines.size(); ++k)
+            if (accepts_nan(lines[k], k + 1 < lines.size() ? lines[k + 1] : ""))
+                FAIL_CHECK(p.generic_string()
+                           << ":" << k + 1
+                           << ": write !(deviation <= limit), which NaN violates: " << lines[k]);
     }
 }
 

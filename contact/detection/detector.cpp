@@ -35,7 +35,7 @@ void check_shape(const Shape& shape)
     constexpr double tolerance = 1e-12;
     if (const double error = lie::orthogonality_error(shape.orientation); !(error <= tolerance))
         lie::reject(where, "the orientation of a surface must be a rotation: |A^T A - I| must be 0", error);
-    if (shape.orientation.determinant() < 0)
+    if (!(shape.orientation.determinant() > 0))
         lie::reject(where, "the orientation of a surface must be a rotation", "a reflection");
 }
 

@@ -25,7 +25,7 @@ HingeForce::HingeForce(const char* type, int i, const Vec3& axis_i, int j, const
     v_bar_i = axis_bar_i.cross(u_bar_i);
     const Motion &bi = motion(start, i), &bj = motion(start, j);
     const double cosine = (bi.A * axis_bar_i).dot(bj.A * axis_j.normalized());
-    if (cosine < 1 - 1e-6)
+    if (!(cosine >= 1 - 1e-6))
         lie::reject(type,
                     "the two axes must be parallel at the start and point in the same direction; "
                     "cosine of their angle",

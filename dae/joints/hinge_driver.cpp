@@ -18,7 +18,7 @@ Blocks hinge_driver(int i, const Vec3& axis_bar_i, int j, const Vec3& axis_bar_j
     const Vec3 towards = motion(x, i).A * (c * p.first + s * p.second);
     // w is perpendicular to the axis of body j, also if the initial data are not exact
     const Vec3 axis_j = motion(x, j).A * unit(axis_bar_j);
-    if (axis.dot(axis_j) < 0.9)
+    if (!(axis.dot(axis_j) >= 0.9))
         lie::reject("hinge driver",
                     "the two axes must be parallel at the start and point in the same direction; "
                     "cosine of their angle",

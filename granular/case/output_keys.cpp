@@ -30,7 +30,7 @@ void read_cells(ObjectReader& o, FieldGrid& grid)
             o.fail("cells", axis, "cells must be integers from 1 to 1e7, got " + io::shortest(cells[axis]));
         grid.cells[axis] = static_cast<int>(cells[axis]);
     }
-    if (const double all = cells[0] * cells[1] * cells[2]; all > most)
+    if (const double all = cells[0] * cells[1] * cells[2]; !(all <= most))
         o.fail("cells", "a grid must have at most 1e7 cells, got " + io::shortest(all));
 }
 

@@ -210,7 +210,7 @@ void check_outline(const std::string& where, const std::vector<Point>& p)
             io::reject(where, "neighbours of the outline must differ",
                        "equal points " + sides(k, (k + 1) % n));
         const double cosine = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]);
-        if (orientation(a, b, c) == 0 && cosine < 0)
+        if (orientation(a, b, c) == 0 && !(cosine >= 0))
             io::reject(where, "neighbouring sides of the outline must not overlap",
                        "sides " + sides(k, (k + 1) % n));
     }

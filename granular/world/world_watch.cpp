@@ -261,7 +261,7 @@ void World::check_watch()
     if (!tool_loads.empty()) check_tools();
     if (w.largest_overlap > watch_limit::overlap) w.warnings |= WatchRecord::deep;
     if (w.largest_displacement > watch_limit::displacement) w.warnings |= WatchRecord::fast;
-    if (w.largest_overlap > watch_limit::largest_overlap) throw_overlap();
+    if (!(w.largest_overlap <= watch_limit::largest_overlap)) throw_overlap();
     // The two schemes gain energy in every collision.
     const bool gains = options.scheme == Scheme::forward_euler || options.scheme == Scheme::extended_taylor;
     const double gain = w.most_dissipated - w.dissipated;

@@ -44,7 +44,7 @@ std::vector<std::string> warnings(const Invariants& of, const dae::Model& model)
                             contacts[k]->name, -c.F_N_least));
     }
     constexpr double largest_residual = 1e-5;  // [m or rad]
-    if (model.keeps_redundant_rows() && of.constraint_norm > largest_residual)
+    if (model.keeps_redundant_rows() && !(of.constraint_norm <= largest_residual))
         all.push_back(
             fmt::format("the constraints with redundant rows are violated by up to {:.1e} m or rad; "
                         "reduce the step",

@@ -89,8 +89,9 @@ void GrainCoupling::check_tool(std::size_t j, const dae::Description& d) const
     const granular::Tool& tool = grains->tools()[j];
     const lie::Motion& body = d.x.body[static_cast<size_t>(all[j].body)];
     const lie::Vec3 at = to_lie(tool.place.r), expected = body.r + body.A * file.pairs[j].r;
-    const double rounding = 1e-6 * std::max(at.norm(), expected.norm());  // of decimals in the files
-    if (!((at - expected).norm() <= rounding))
+    // of decimals in the files; without squares, which overflow
+    const double rounding = 1e-6 * std::max(at.lpNorm<Eigen::Infinity>(), expected.lpNorm<Eigen::Infinity>());
+    if (!((at - expected).lpNorm<Eigen::Infinity>() <= rounding))
         throw io::InvalidInput(fmt::format(
             "{}: boundary '{}' is at ({:.9g}, {:.9g}, {:.9g}) m in the case, but body '{}' starts with it at "
             "({:.9g}, {:.9g}, {:.9g}) m; r of the pair is the place of the boundary relative to the centre "

@@ -85,7 +85,7 @@ std::string check_run(const dae::Model& model, const lie::State& start, const li
                           scheme.name, force->label()));
     if (scheme.adaptive) return "";
     const dae::Model::StableStep stable = model.stable_step(start, scheme);
-    if (!(grid.h > stable.h)) return "";
+    if (grid.h <= stable.h) return "";
     const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];
     std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,

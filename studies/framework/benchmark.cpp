@@ -86,7 +86,7 @@ void check_stable(const std::string& kind, const Benchmark& c, const std::vector
     const dae::Model& model = *c.started->model;
     const dae::Model::StableStep stable = model.stable_step(c.started->x, lie::LoadEvaluation::implicit);
     for (const double h : steps)
-        if (h > stable.h)
+        if (!(h <= stable.h))
             throw io::UsageError(
                 fmt::format("study {}: {}: the step {} s is above {:.3g} s, the stability limit of {} "
                             "in an explicit step; --steps sets others",
@@ -100,7 +100,7 @@ void check_steps(const std::string& kind, const Benchmark& c, const std::vector<
 {
     check_stable(kind, c, steps);
     for (const double h : steps)
-        if (h > most * (1 + 1e-9) || !divides(h, c.end))
+        if (!(h <= most * (1 + 1e-9)) || !divides(h, c.end))
             throw io::UsageError(fmt::format(
                 "study {}: --steps must divide the end of {}, {} s, and be at most {:.4g} s, got {}", kind,
                 c.problem.name, c.end, most, h));

@@ -341,6 +341,8 @@ def errors(runs):
     other["boundaries"][2]["r"] = [0, 0, 0.03]
     cosim("place", r"\(/pairs/0\): boundary 'ball' is at \(0, 0, 0.03\) m in the case, but body 'ball' starts with it at \(0.0007, 0.0003, 0.0225\) m",
           case=other)
+    # squares of such a place overflow
+    cosim("far", r"\(/pairs/0\): boundary 'ball' is at", pairs=[{"body": "ball", "boundary": "ball", "r": [1e155, 0, 0]}])
     other = copy.deepcopy(CUP)
     other["boundaries"][2].update(mass=0.5, free=[True] * 3)
     cosim("mass", r"\(/pairs/0\): boundary 'ball' has the mass 0.5 kg, body 'ball' has 0.003 kg", case=other)

@@ -29,6 +29,20 @@ const Constraint& general_constraint_of_row(const Model& model, const State& x, 
     throw std::logic_error("no general constraint has this row");
 }
 
+/// The rows of the reduced system in the order in which they are kept: of dependent rows the last one is
+/// redundant. The rows of general constraints other than contacts come first, because only those of blocks
+/// are dropped. Those of contacts come last: a contact whose row is redundant changes its mode.
+std::vector<int> order_of_rows(const Model& model, const State& x, int rows)
+{
+    const int blocks = static_cast<int>(model.active_rows().size());
+    std::vector<int> first, last;
+    for (int k = blocks; k < rows; ++k)
+        (general_constraint_of_row(model, x, k).as_contact() == nullptr ? first : last).push_back(k);
+    for (int k = 0; k < blocks; ++k) first.push_back(k);
+    first.insert(first.end(), last.begin(), last.end());
+    return first;
+}
+
 }  // namespace
 
 std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
@@ -46,13 +60,15 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     cholmod_common common;
     cholmod_l_start(&common);
     common.print = 0;
-    // Column k of the matrix A is row k of the constraints, scaled to length one.
+    // A column of the matrix A is a row of the constraints, scaled to length one.
     cholmod_triplet* triplets =
         cholmod_l_allocate_triplet(n, m, 6 * C.entry.size(), 0, CHOLMOD_REAL, &common);
     auto* row = static_cast<SuiteSparse_long*>(triplets->i);
     auto* column = static_cast<SuiteSparse_long*>(triplets->j);
     auto* value = static_cast<double*>(triplets->x);
-    for (int k = 0; k < m; ++k) {
+    const std::vector<int> order = order_of_rows(model, x, m);
+    for (int at = 0; at < m; ++at) {
+        const int k = order[at];
         double sum = 0;
         const size_t first = triplets->nnz;
         for (int e = C.start[k]; e < C.start[k + 1]; ++e)
@@ -62,7 +78,7 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
                 const double v = (c < 3 ? C.entry[e].r[c] : C.entry[e].pi[c - 3]) / std::sqrt(inertia);
                 if (v == 0) continue;
                 row[triplets->nnz] = 6 * b + c;
-                column[triplets->nnz] = k;
+                column[triplets->nnz] = at;
                 value[triplets->nnz++] = v;
                 sum += v * v;
             }
@@ -87,8 +103,9 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
             if (std::find(index + start[k], index + start[k + 1], independent) != index + start[k + 1])
                 ++independent;
             else
-                dependent.push_back(k);
+                dependent.push_back(order[k]);
         }
+        std::sort(dependent.begin(), dependent.end());
     }
 
     cholmod_l_free(m, sizeof(SuiteSparse_long), E, &common);
@@ -104,19 +121,24 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
         dependent.pop_back();
     }
     std::vector<std::string> undetermined;
+    bool can_keep = true;  // contacts have no redundant rows
     for (const Constraint* c : dependent_contacts)
         if (const ContactConstraint* const contact = c->as_contact();
             contact != nullptr && contact->mode_if_redundant() != Constraint::active)
             Model::set_mode(*contact, x, contact->mode_if_redundant());
-        else if (undetermined.empty() || undetermined.back() != c->label())
+        else if (undetermined.empty() || undetermined.back() != c->label()) {
             undetermined.push_back(c->label());
+            can_keep = can_keep && contact == nullptr;
+        }
     std::string names;
     for (const std::string& label : undetermined) names += (names.empty() ? "" : ", ") + label;
     if (!names.empty())
-        throw lie::NumericalFailure("contact_rank",
-                                    "the forces of these constraints are not determined, because other "
-                                    "constraints already prevent the same motion: " +
-                                        names);
+        throw lie::NumericalFailure(
+            "contact_rank",
+            "the forces of these constraints are not determined, because other "
+            "constraints already prevent the same motion: " +
+                names +
+                (can_keep ? ". With \"redundant\": \"keep\" in the model file all rows are kept" : ""));
     return dependent;
 }
 

@@ -5,6 +5,7 @@
 #include "io/json_source.hpp"
 #include "io/message.hpp"
 #include "io/option_values.hpp"
+#include "io/progress.hpp"
 #include "lie/check.hpp"
 #include "lie/schemes.hpp"
 #include "reference/solvers/least_squares.hpp"
@@ -14,7 +15,6 @@
 #include <Eigen/SVD>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -54,7 +54,7 @@ public:
         least.progress = [this](int iteration, double sum) { report(iteration, sum); };
         least.max_iterations = problem.max_iterations;
         const reference::LeastSquaresSolution solution = minimise(least);
-        if (shows_progress()) io::message("\r" + std::string(70, ' ') + "\r");
+        line.clear();
 
         FitResult all;
         all.iterations = solution.iterations;
@@ -385,12 +385,12 @@ private:
                              all.sigma));
     }
 
-    bool shows_progress() const { return problem.progress && isatty(STDERR_FILENO) != 0; }
-    void report(int iteration, double sum) const
+    /// The remaining time is that of all iterations that are allowed.
+    void report(int iteration, double sum)
     {
-        if (shows_progress())
-            io::message(fmt::format("\rfit: iteration {}, {}, chi^2 {:.6g}   ", iteration,
-                                    io::counted(runs, "run"), sum));
+        line.completed(static_cast<double>(iteration) / problem.max_iterations);
+        line.show(fmt::format("fit: iteration {} of at most {}, {}, chi^2 {:.6g}", iteration,
+                              problem.max_iterations, io::counted(runs, "run"), sum));
     }
 
     const FitProblem& problem;
@@ -400,6 +400,7 @@ private:
     bool derivatives_are_known = true;  ///< at the minimum
     std::string refusal;                ///< why the last run without residuals has failed
     std::atomic<long> runs = 0;
+    io::ProgressLine line{!problem.progress};
 };
 
 }  // namespace

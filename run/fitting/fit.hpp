@@ -36,7 +36,7 @@ struct FitProblem {
     SampledRunOptions run;
     int max_iterations = 100;
     int jobs = 1;                             ///< number of concurrent runs
-    bool progress = false;                    ///< on stderr, if that is a terminal
+    bool progress = false;                    ///< on stderr
     const std::atomic<bool>* stop = nullptr;  ///< ends the runs, of all threads, when it is true
 };
 

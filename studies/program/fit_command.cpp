@@ -244,7 +244,7 @@ int fit_model(const FitOptions& options)
         io::write_file(directory + "/model.json", result.model.text);
         io::write_file(directory + "/fit.csv", table_of(result, problem.data));
         io::write_file(directory + "/fit.json", all.text());
-        if (options.plot) plot("fit.py", directory, {.formats = options.figure_formats});
+        if (options.plot) draw_figures("fit.py", directory, options.figure_formats);
         if (!options.quiet && !options.json) std::cout << "written to " << directory << '\n';
     }
     return result.has_converged ? io::exit_code::done : io::exit_code::numerical_failure;

@@ -10,6 +10,7 @@
 #include "io/provenance.hpp"
 #include "run/jobs/finished_jobs.hpp"
 #include "run/provenance.hpp"
+#include "studies/program/plot.hpp"
 #include "studies/program/repeating/reproduction.hpp"
 
 #include <fmt/format.h>
@@ -94,6 +95,7 @@ public:
         select();
         open_directory();
         const io::Interrupt interrupt;
+        draw_missing();
         write_page();
         run_studies();
         write_page();
@@ -170,6 +172,22 @@ private:
         }
     }
 
+    /// Whether a study has results and no figure of them
+    bool lacks_figure(const Reproduced& r) const { return o.plot && r.has_ended() && r.figures.empty(); }
+
+    /// Draws the figures of the studies that ended without them in an earlier process.
+    void draw_missing()
+    {
+        for (Reproduced& r : all) {
+            if (!lacks_figure(r) || io::Interrupt::caught() != 0) continue;
+            const std::string in = path(r.entry->name);
+            draw_figures(script_for(in), in, {});
+            read_results(r, o.output);
+            if (!o.quiet && !r.figures.empty())
+                std::cout << fmt::format("{}, {}: drawn\n", r.entry->name, r.entry->figures) << std::flush;
+        }
+    }
+
     /// Studies that measure time run alone, at the end. The long studies are those of the last chapters: one
     /// process of several begins with the last one, so that no long study is alone at the end.
     void run_studies()
@@ -204,7 +222,11 @@ private:
                 end_of(r, status, count);
                 return true;
             });
-            if (line.is_due() && !running.empty()) line.show(progress(running, count));
+            if (line.is_due() && !running.empty()) {
+                // The studies take different times: the remaining time is a rough one.
+                line.completed(static_cast<double>(ended_now) / static_cast<double>(count), 0);
+                line.show(progress(running, count));
+            }
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
     }
@@ -247,7 +269,9 @@ private:
         if (o.quiet) return;
         std::cout << fmt::format("[{:2}/{}] {}, {}: {}, {:.1f} s{}\n", ended_now, count, r.entry->name,
                                  r.entry->figures, r.status, r.seconds,
-                                 r.status == "error" ? "; " + r.message : "")
+                                 r.status == "error" ? "; " + r.message
+                                 : lacks_figure(r)   ? "; no figure: " + r.message
+                                                     : "")
                   << std::flush;
     }
 
@@ -277,10 +301,18 @@ private:
 
     int finish() const
     {
+        const auto without_figure =
+            std::count_if(all.begin(), all.end(), [this](const Reproduced& r) { return lacks_figure(r); });
         if (!o.quiet)
-            std::cout << fmt::format("{} passed, {} failed, {} without criterion, {} with an error; {}\n",
-                                     count("passed"), count("failed"), count("done"), count("error"),
-                                     path("index.html"));
+            std::cout << fmt::format(
+                "{} passed, {} failed, {} without criterion, {} with an error{}; {}\n", count("passed"),
+                count("failed"), count("done"), count("error"),
+                without_figure == 0 ? "" : fmt::format(", {} without a figure", without_figure),
+                path("index.html"));
+        if (without_figure > 0)
+            io::warning(
+                fmt::format("{} without a figure; the same command with --resume draws what is missing",
+                            io::counted(without_figure, "study", "studies")));
         if (const int signal = io::Interrupt::caught(); signal != 0) {
             if (!o.quiet) std::cout << "interrupted; the same command with --resume continues\n";
             return io::exit_code::signal + signal;

@@ -58,14 +58,83 @@ def style(scheme, others=()):
     return COLOURS[-1 - k % len(COLOURS)], MARKERS[-1 - k % len(MARKERS)]
 
 
+def stop(code, text):
+    """Ends with an error of hilda plot"""
+    print(text, file=sys.stderr)
+    sys.exit(code)
+
+
+class Cell(str):
+    """A field of a table. One that should be a number and is none ends the script with its place."""
+
+    def __new__(cls, text, row, column):
+        cell = super().__new__(cls, text)
+        cell.row, cell.column = row, column
+        return cell
+
+    def __float__(self):
+        try:
+            return float(str(self))
+        except ValueError:
+            return self.row.damaged(f"column {self.column} must be a number, got {str(self)!r}")
+
+    def __int__(self):
+        try:
+            return int(str(self))
+        except ValueError:
+            return self.row.damaged(f"column {self.column} must be an integer, got {str(self)!r}")
+
+
+class Row(dict):
+    """A row of a table by the names of its columns. A column that is missing ends the script with the place."""
+
+    def __init__(self, file, line, names, cells):
+        self.file, self.line = file, line
+        if len(cells) != len(names):
+            self.damaged(f"must have {len(names)} fields, got {len(cells)}")
+        super().__init__(zip(names, cells))
+
+    def __getitem__(self, column):
+        if column not in self:
+            stop(options.DAMAGED, f"{self.file}:1: has no column {column}")
+        return Cell(super().__getitem__(column), self, column)
+
+    def damaged(self, what):
+        stop(options.DAMAGED, f"{self.file}:{self.line}: {what}")
+
+
 def read(*path):
     """The rows of a CSV file as dictionaries of strings; those of the group of run.h5 if the run has written this instead"""
     name = os.path.join(*path)
     tables = os.path.join(os.path.dirname(name), "run.h5")
     if not os.path.exists(name) and os.path.exists(tables):
         return read_hdf5(tables, os.path.splitext(os.path.basename(name))[0])
-    with open(name, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    try:
+        with open(name, newline="", encoding="utf-8") as file:
+            lines = csv.reader(file, strict=True)
+            names = next(lines, [])
+            rows = [(lines.line_num, cells) for cells in lines if cells]
+            if rows and len(rows[-1][1]) < len(names) and not ends_with_a_line(name):
+                rows.pop()  # a run that goes on has written a part of its last row
+    except (UnicodeDecodeError, csv.Error) as error:
+        stop(options.DAMAGED, f"{name}: is not a CSV table in UTF-8: {error}")
+    if len(set(names)) < len(names) or not names:
+        stop(options.DAMAGED, f"{name}:1: must have the names of the columns, each once")
+    return [Row(name, line, names, cells) for line, cells in rows]
+
+
+def read_rows(*path):
+    """The same of a table that must have rows"""
+    rows = read(*path)
+    if not rows:
+        stop(options.DAMAGED, f"{os.path.join(*path)}: has no rows")
+    return rows
+
+
+def ends_with_a_line(path):
+    with open(path, "rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read() == b"\n"
 
 
 def read_hdf5(path, table):
@@ -78,18 +147,23 @@ def read_hdf5(path, table):
         with h5py.File(path, "r") as file:
             columns = {dataset.attrs["name"]: dataset[:].tolist() for dataset in file[table].values()}
     except (OSError, KeyError, RuntimeError) as error:
-        print(f"{path}: cannot be read: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(5)
+        stop(options.CANNOT_READ, f"{path}: cannot be read: {' '.join(str(error).split())}")
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
-def record(folder):
+def record(folder, name="study.json"):
     """The contents of study.json of the result directory; empty if there is no such file"""
+    name = os.path.join(folder, name)
     try:
-        with open(os.path.join(folder, "study.json"), encoding="utf-8") as file:
-            return json.load(file)
+        with open(name, encoding="utf-8") as file:
+            content = json.load(file)
     except FileNotFoundError:
         return {}
+    except ValueError as error:
+        stop(options.DAMAGED, f"{name}: is not JSON: {error}")
+    if not isinstance(content, dict):
+        stop(options.DAMAGED, f"{name}: must be an object")
+    return content
 
 
 def distinct(rows, column):
@@ -248,6 +322,21 @@ def tidy_and_lay_out(figure, place):
         figure.tight_layout(rect=place)
 
 
+def write(figure, path, kind):
+    """Writes a file that is complete or absent; a link in its place is replaced, not followed"""
+    new = path + ".new"
+    try:
+        if os.path.lexists(new):
+            os.remove(new)  # of a program that was killed
+        with open(new, "xb") as file:
+            figure.savefig(file, format=kind, dpi=RESOLUTION, metadata=UNDATED.get(kind))
+        os.replace(new, path)
+    except OSError as error:
+        if os.path.lexists(new):
+            os.remove(new)
+        stop(options.CANNOT_WRITE, f"{path}: cannot be written: {error.strerror}")
+
+
 def save(figure, folder, name, below=0.0, top=0.97):
     """Saves the figure NAME.png in the formats of --format and prints the names of the files; `below` and `top` are the
     margins of the panels as fractions of the figure height"""
@@ -264,7 +353,7 @@ def save(figure, folder, name, below=0.0, top=0.97):
     slopes.place_labels(figure)
     for kind in options.formats():
         file = f"{os.path.splitext(name)[0]}.{kind}"
-        figure.savefig(os.path.join(folder, file), dpi=RESOLUTION, metadata=UNDATED.get(kind))
+        write(figure, os.path.join(folder, file), kind)
         print(file)
     plt.close(figure)
 

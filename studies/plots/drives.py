@@ -4,7 +4,7 @@
 
     drives.py DIR      reads DIR/drives.csv, writes DIR/drives.png
 """
-from drawing import COLOURS, Line2D, axis, directory, lines_below, numbers, plt, read, save
+from drawing import COLOURS, Line2D, axis, directory, lines_below, numbers, plt, read_rows, save
 
 PANELS = [("value", "prescribed motion $f$ [rad or m]"), ("load", "load $-\\lambda$ [N m or N]"),
           ("power", "power $-\\lambda\\,\\dot f$ [W]")]
@@ -12,7 +12,7 @@ MOST = 8
 
 
 def draw(folder):
-    rows = read(folder, "drives.csv")
+    rows = read_rows(folder, "drives.csv")
     names = [name[:-6] for name in rows[0] if name.endswith(".value")]
     shown = names[:MOST]
     figure, all_axes = plt.subplots(1, len(PANELS), figsize=(12, 3.9))

@@ -4,10 +4,10 @@
 
     fit.py DIR      reads DIR/fit.csv and DIR/fit.json, writes DIR/fit.png
 """
-import json
 import os
 
-from drawing import directory, plt, read, save
+import options
+from drawing import directory, plt, read_rows, record, save, stop
 
 MOST_PANELS = 4
 
@@ -17,11 +17,13 @@ def numbers(rows, column):
 
 
 def draw(folder):
-    with open(os.path.join(folder, "fit.json"), encoding="utf-8") as file:
-        record = json.load(file)
-    rows = read(folder, "fit.csv")
-    names = [column["name"] for column in record["columns"]]
-    units = {column["name"]: f" [{column['unit']}]" if column["unit"] not in ("", "1") else "" for column in record["columns"]}
+    fit = record(folder, "fit.json")
+    missing = [key for key in ("model", "columns", "parameters", "values") if key not in fit]
+    if missing:
+        stop(options.DAMAGED, f"{os.path.join(folder, 'fit.json')}: has no key '{missing[0]}'")
+    rows = read_rows(folder, "fit.csv")
+    names = [column["name"] for column in fit["columns"]]
+    units = {column["name"]: f" [{column['unit']}]" if column["unit"] not in ("", "1") else "" for column in fit["columns"]}
     shown = names[:MOST_PANELS]
     t = numbers(rows, "t")
     figure, axes = plt.subplots(2, len(shown), figsize=(min(11, 3.6 * len(shown) + 1.2), 5), sharex=True, squeeze=False,
@@ -39,7 +41,7 @@ def draw(folder):
     axes[0][0].legend(fontsize="small")
     axes[1][0].set_ylabel("data - model")
     left_out = f"; not shown: {len(names) - len(shown)} more" if len(names) > len(shown) else ""
-    figure.suptitle(f"{record['model']}: {len(record['parameters'])} parameters, {record['values']} values{left_out}", fontsize="medium")
+    figure.suptitle(f"{fit['model']}: {len(fit['parameters'])} parameters, {fit['values']} values{left_out}", fontsize="medium")
     save(figure, folder, "fit.png")
 
 

@@ -15,7 +15,7 @@ import os
 import granular_fields
 import granular_loads
 import options
-from drawing import COLOURS, DASHES, Line2D, along, axis, chosen, directory, lines_below, numbers, plt, read, save
+from drawing import COLOURS, DASHES, Line2D, along, axis, chosen, directory, lines_below, numbers, plt, read_rows, save
 
 MARKERS = "osv^D<>P"
 
@@ -144,7 +144,7 @@ def empty_panels(rows, shown):
 
 
 def draw(folder, quantities):
-    rows = read(folder, "run.csv")
+    rows = read_rows(folder, "run.csv")
     if len(rows) < 2:
         options.refuse("run.csv has fewer than two rows; a shorter --interval of the run gives more")
     boundaries = [name[:-3] for name in rows[0] if name.endswith("_Fx")]

@@ -21,7 +21,12 @@ class Fields:
     def __init__(self, path):
         with open(path, encoding="utf-8") as file:
             names = file.readline().strip().split(",")
-            table = numpy.loadtxt(file, delimiter=",", ndmin=2)
+            try:
+                table = numpy.loadtxt(file, delimiter=",", ndmin=2)
+            except ValueError as error:
+                drawing.stop(options.DAMAGED, f"{path}: is not a table of numbers: {error}")
+        if table.size > 0 and table.shape[1] != len(names):
+            drawing.stop(options.DAMAGED, f"{path}:1: must have the names of {table.shape[1]} columns, got {len(names)}")
         self.empty = table.size == 0
         if self.empty:
             return

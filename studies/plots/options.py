@@ -3,11 +3,14 @@
 
     SCRIPT.py DIR [--format FORMAT,...] [--integrator NAME,...] [--quantity NAME,...]
 
-Exit code 2 after one line on stderr: an option that this figure cannot use, or an unknown name.
+Exit code after one line on stderr: REFUSED, an option that this figure cannot use, or an unknown name; DAMAGED, a table that
+is no result; CANNOT_READ and CANNOT_WRITE, a file.
 """
 import difflib
 import sys
 
+REFUSED, DAMAGED, CANNOT_READ = 2, 3, 5
+CANNOT_WRITE = CANNOT_READ
 MOST_CURVES = 8
 # The schemes of the dissertation come first in the legends and are drawn on top of the others.
 OF_THE_TEXT = ("rA-full-1", "rA-half-1", "rA-half-2")
@@ -23,7 +26,7 @@ used = set()   # options that the script has used
 
 def refuse(message):
     print(message, file=sys.stderr)
-    sys.exit(2)
+    sys.exit(REFUSED)
 
 
 class Arguments:

@@ -56,7 +56,13 @@ def read_table(folder, name):
     return read_hdf5(path, name) if os.path.isfile(path) else None
 
 
+MOST_BYTES = 2 << 30  # of a table that is read
+
+
 def read_csv(path):
+    if os.path.getsize(path) > MOST_BYTES:
+        raise Refused(f"{path}: has {os.path.getsize(path) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read; a run "
+                      "with a longer --interval writes fewer rows")
     try:
         with open_text(path) as file:
             names = next(csv.reader([file.readline()]), [])
@@ -96,6 +102,8 @@ KINDS = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "UInt8": "u1", "Int
 
 def read_frame(path, needed):
     """The arrays of a file written by io::VtkPolyData, by section and name. `needed`: arrays that it must have"""
+    if os.path.getsize(path) > MOST_BYTES:
+        raise Refused(f"{path}: has {os.path.getsize(path) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
     with open(path, "rb") as file:
         text = file.read()
     begin = text.find(b"_", text.find(b"<AppendedData")) + 1
@@ -131,7 +139,7 @@ def frames_of(folder):
     except (xml.etree.ElementTree.ParseError, KeyError, ValueError) as error:
         raise Refused(f"{path}: is not a list of frames: {error}") from None
     for t, file in frames:
-        part = re.match(r"(?:vtk/)?([a-z]+)", file)
+        part = re.fullmatch(r"(?:vtk/)?([a-z]+)[^/]*", file)  # in the folder
         if part and os.path.isfile(os.path.join(folder, file)):
             parts.setdefault(part[1], []).append((t, os.path.join(folder, file)))
     return parts

@@ -12,7 +12,7 @@ MOST_CURVES = 8  # with more, a colour bar of the second entry replaces the lege
 
 def is_number(text):
     try:
-        float(text)
+        float(str(text))  # not a Cell, which ends the script
         return True
     except ValueError:
         return False

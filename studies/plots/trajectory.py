@@ -6,7 +6,7 @@
 """
 import math
 
-from drawing import COLOURS, Line2D, axis, chosen, directory, lines_below, numbers, plt, read, save
+from drawing import COLOURS, Line2D, axis, chosen, directory, lines_below, numbers, plt, read_rows, save
 
 DASHES = {"x": "-", "y": "--", "z": ":"}
 MOST_BODIES = 8  # of longer chains, equally spaced bodies are drawn
@@ -38,7 +38,7 @@ def constraint(axes, rows):
 
 
 def draw(folder):
-    rows = read(folder, "trajectory.csv")
+    rows = read_rows(folder, "trajectory.csv")
     bodies, all_bodies = bodies_of(rows)
     panels = {
         "r": lambda axes: components(axes, rows, bodies, "r", "position $r$ [m]"),

@@ -33,6 +33,7 @@ LIBRARY = os.environ.get("HILDA_THREE", "/usr/share/javascript/three")
 POSE_BYTES, COLUMN_BYTES, GRAIN_BYTES = 16e6, 8e6, 18e6  # at most, before base64
 FLAT = 60    # a mesh with at most so many polygons has flat faces and edges
 MOST_CONTACTS = 200
+MOST_PAGE_BYTES = 256e6  # a larger page is not drawn by browsers
 VIDEO_SIZE, VIDEO_RATE = (1280, 720), 25  # pixels, pictures per second
 PARTICLES = (("Points", "Points"), ("PointData", "velocity"), ("PointData", "radius"), ("PointData", "id"))
 UNITS = {"r": "m", "v": "m/s", "w": "rad/s", "a": "m/s²", "al": "rad/s²", "F": "N", "T": "N m"}
@@ -398,10 +399,24 @@ def serve(folder, geometry, most, port):
         pass
 
 
+def remove(path):
+    try:
+        os.remove(path)
+    except FileNotFoundError:
+        pass
+
+
 def write_whole(path, text):
-    with open(path + ".new", "w", encoding="utf-8") as file:
-        file.write(text)
-    os.replace(path + ".new", path)
+    """Writes a file that is complete or absent; a link in its place is replaced, not followed"""
+    new = path + ".new"
+    try:
+        remove(new)  # of a program that was killed
+        with open(new, "x", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(new, path)
+    except OSError as error:
+        remove(new)
+        raise OSError(error.errno, error.strerror, path) from None  # that of a full disk names no file
 
 
 def write_video(path, data, seconds):
@@ -420,6 +435,8 @@ def write_video(path, data, seconds):
         window.open("file://" + os.path.join(folder, "view.html"))
         window.wait("viewer.ready || viewer.errors.length", seconds=math.inf)
         window.run("viewer.picture_only()")
+        remove(path + ".new")
+        open(path + ".new", "xb").close()
         words = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-framerate", str(VIDEO_RATE), "-c:v", "png", "-i", "-",
                  "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", "-f", "mp4", path + ".new"]
         with subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
@@ -456,10 +473,13 @@ def write(arguments):
         try:
             text += ", " + write_video(arguments.output, data, arguments.video)
         finally:  # also after an interruption
-            if os.path.exists(arguments.output + ".new"):
-                os.remove(arguments.output + ".new")
+            remove(arguments.output + ".new")
     else:
-        write_whole(arguments.output, page(data))
+        text_of_page = page(data)
+        if len(text_of_page) > MOST_PAGE_BYTES:
+            raise Refused(f"{arguments.folder}: the page would have {len(text_of_page) / 1e6:.0f} MB, at most "
+                          f"{MOST_PAGE_BYTES / 1e6:.0f} MB are written; a smaller --frames, or fewer particles or vertices")
+        write_whole(arguments.output, text_of_page)
     print(f"written       {arguments.output}: {text}, {os.path.getsize(arguments.output) / 1e6:.1f} MB")
 
 

@@ -208,8 +208,8 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
     constexpr int refused = 2;  // see studies/plots/options.py
     if (result.code == refused && !(options.integrators.empty() && options.quantities.empty()))
         throw io::UsageError("plot: " + last_line(result.output));
-    constexpr int damaged = 5;  // see studies/plots/drawing.py
-    if (result.code == damaged) throw io::IoError(last_line(result.output));
+    if (result.code == io::exit_code::invalid_input) throw io::InvalidInput(last_line(result.output));
+    if (result.code == io::exit_code::input_output) throw io::IoError(last_line(result.output));
     const std::string why = path.empty() ? "the script " + script + " was not found" : failure_reason(result);
     if (!why.empty()) {
         io::warning("no figures: " + why);
@@ -231,7 +231,12 @@ std::optional<std::vector<std::string>> plot(const std::string& script, const st
 std::vector<std::string> draw_figures(const std::string& script, const std::string& directory,
                                       const std::vector<std::string>& formats)
 {
-    return plot(script, directory, {.formats = formats}).value_or(std::vector<std::string>{});
+    try {
+        return plot(script, directory, {.formats = formats}).value_or(std::vector<std::string>{});
+    } catch (const std::exception& error) {  // the results are complete without figures
+        io::warning("no figures: " + std::string(error.what()));
+        return {};
+    }
 }
 
 void start_script(const std::string& script, const std::vector<std::string>& arguments)

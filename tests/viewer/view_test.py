@@ -10,6 +10,7 @@ import csv
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -238,6 +239,31 @@ class Pages(unittest.TestCase):
         done = subprocess.run([HILDA, "view", self.pendulum], capture_output=True, text=True, env=environment)
         self.assertEqual(done.returncode, 7)
         self.assertIn("three.js is missing (Debian: apt-get install libjs-three)", done.stderr)
+
+    def test_full_disk_and_large_page(self):
+        """A page that cannot be written, or is too large for a browser, leaves no file."""
+        folder = self.folder("full")
+        shutil.copytree(self.pendulum, folder)
+        for name in ("view.html", "view.html.new"):
+            if os.path.exists(os.path.join(folder, name)):
+                os.remove(os.path.join(folder, name))
+        before = sorted(os.listdir(folder))
+        done = subprocess.run([HILDA, "view", folder], capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000)))
+        self.assertEqual((done.returncode, done.stderr), (5, f"hilda: error: {folder}/view.html: File too large\n"))
+        self.assertEqual(sorted(os.listdir(folder)), before)
+        with open(os.path.join(folder, "model.json"), encoding="utf-8") as file:
+            model = json.load(file)
+        code = ("import runpy, sys; sys.path.insert(0, sys.argv[1]); import view; view.MOST_PAGE_BYTES = 1000; "
+                "sys.argv = ['view.py', *sys.argv[2:]]; view.main()")
+        plots = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "studies", "plots")
+        with open(self.folder("geometry.json"), "w", encoding="utf-8") as file:
+            json.dump({"bodies": [body["name"] for body in model["bodies"]], "meshes": [], "joints": [], "lines": []}, file)
+        done = subprocess.run([sys.executable, "-B", "-c", code, plots, folder, os.path.join(folder, "view.html"), "--geometry",
+                               self.folder("geometry.json")], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, "the page would have [0-9]+ MB, at most 0 MB are written; a smaller --frames")
+        self.assertEqual(sorted(os.listdir(folder)), before)
 
     def changed(self, folder, name, change):
         """A copy of the folder in which a file has other bytes"""

@@ -71,6 +71,42 @@ TEST_CASE("a figure is written in each format of the option --figure-format, wit
     CHECK(drawn.out == "written to b: trajectory.pdf\n");
 }
 
+TEST_CASE("hilda plot refuses a damaged table with its line", "[studies][figures]")
+{
+    const Scratch in;
+    if (!has_matplotlib(in)) return;
+    REQUIRE(call(in, {"run", "double_pendulum", "--end", "0.02", "--quiet", "--output", "a"}).code == 0);
+    const std::string whole = read(in / "a/trajectory.csv");
+    const auto line = [&](int number) {  // begin of a line, from 1
+        size_t at = 0;
+        while (--number > 0) at = whole.find('\n', at) + 1;
+        return at;
+    };
+    const auto changed = [&](size_t at, size_t count, const std::string& by) {
+        std::string text = whole;
+        return text.replace(at, count, by);
+    };
+    const std::pair<std::string, std::string> damaged[] = {
+        {changed(line(3), 5, "x"), "trajectory.csv:3: column t must be a number, got 'x'"},
+        {changed(line(4), 0, "1,"), "trajectory.csv:4: must have "},
+        {changed(0, 1, "s"), "trajectory.csv:1: has no column t"},
+        {changed(0, whole.size(), "\xE1\xFF,b\n1,2\n"), "trajectory.csv: is not a CSV table in UTF-8"},
+        {"", "trajectory.csv:1: must have the names of the columns, each once"},
+        {whole.substr(0, line(2)), "trajectory.csv: has no rows"}};
+    for (const auto& [text, message] : damaged) {
+        write(in / "a/trajectory.csv", text);
+        const Ended ended = call(in, {"plot", "a"});
+        CAPTURE(ended.err);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, Contains("hilda: error: a/" + message));
+        CHECK_FALSE(fs::exists(in / "a/trajectory.png"));
+    }
+    // a run that goes on has written a part of its last row
+    write(in / "a/trajectory.csv", whole + "0.021,1");
+    CHECK(call(in, {"plot", "a"}).code == 0);
+    CHECK_FALSE(fs::exists(in / "a/trajectory.png.new"));
+}
+
 TEST_CASE("a wrong figure option is refused before the first run", "[studies][figures]")
 {
     const Scratch in;

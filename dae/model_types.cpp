@@ -47,6 +47,8 @@ Samples read_samples(ObjectReader& o, const std::string& file, const std::string
         });
     } catch (const io::IoError& e) {
         o.fail("file", e.what());
+    } catch (const io::PlacedError&) {
+        throw;
     } catch (const io::InvalidInput& e) {
         o.fail("file", e.what());
     }

@@ -56,11 +56,37 @@ std::vector<std::string_view> cells_of(std::string_view line, std::deque<std::st
 
 }  // namespace
 
+namespace {
+
+/// Refuses a text in UTF-16, as some spreadsheets write.
+void refuse_other_encoding(std::string_view text, const std::string& file)
+{
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") ||
+        text.substr(0, 4).find('\0') != text.npos)
+        throw InvalidInput(file + ": is a text in UTF-16 or binary data; a table is a text in UTF-8");
+}
+
+/// Refuses a line of names that is one column because other characters than commas separate them.
+void refuse_other_separator(const std::vector<std::string_view>& names, const std::string& place)
+{
+    if (names.size() != 1) return;
+    const std::string_view name = names[0];
+    const char* const separator = name.find(';') != name.npos    ? "semicolons"
+                                  : name.find('\t') != name.npos ? "tabs"
+                                                                 : nullptr;
+    if (separator != nullptr)
+        throw InvalidInput(place + ": the names of the columns are separated by " + separator +
+                           "; a table has commas, and points in its numbers");
+}
+
+}  // namespace
+
 void read_csv(std::string_view text, const std::string& file, const std::function<void(const CsvRow&)>& use)
 {
     std::vector<std::string_view> names;
     std::deque<std::string> of_names, of_row;  // the references to their texts stay valid
     long line = 0;
+    refuse_other_encoding(text, file);
     text = without_byte_order_mark(text);
     for (std::size_t from = 0; from < text.size();) {
         const std::size_t to = std::min(text.find('\n', from), text.size());
@@ -72,6 +98,7 @@ void read_csv(std::string_view text, const std::string& file, const std::functio
                    file + ':' + std::to_string(line)};
         if (names.empty()) {
             names = row.cells;
+            refuse_other_separator(names, row.place);
             for (auto name = names.begin(); name != names.end(); ++name)
                 if (std::find(names.begin(), name, *name) != name)
                     throw InvalidInput(row.place + ": two columns have the same name, got '" +

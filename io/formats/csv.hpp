@@ -54,8 +54,9 @@ struct CsvRow {
 };
 
 /// Calls `use` for each row of a table. The first line has the names of the columns. Empty lines and lines
-/// that begin with # are ignored. Throws InvalidInput with FILE:LINE for two columns of one name, and for a
-/// row with another number of cells.
+/// that begin with # are ignored. Throws InvalidInput with FILE:LINE for two columns of one name, for names
+/// that semicolons or tabs separate, and for a row with another number of cells; with FILE for a text in
+/// UTF-16.
 void read_csv(std::string_view text, const std::string& file, const std::function<void(const CsvRow&)>& use);
 
 }  // namespace hilda::io

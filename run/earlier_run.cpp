@@ -28,6 +28,13 @@ bool exists(const std::string& file)
 
 }  // namespace
 
+io::Json earlier_summary(const std::string& directory)
+{
+    const std::string file = directory + "/summary.json";
+    return io::JsonSource(io::read_file(file, io::JsonSource::max_bytes), file, io::JsonSource::max_bytes)
+        .root;
+}
+
 EarlierRun::EarlierRun(std::string directory)
     : has_ended(exists(directory + "/summary.json") && !io::CheckpointFiles(directory).exist()),
       directory(std::move(directory))
@@ -86,7 +93,7 @@ void EarlierRun::check_continues(const RunIdentity& by, const RunSettings& of_ru
     const long steps = by.grid.steps;
     const bool same_end = lie::TimeGrid::over(from->end, by.grid.h).steps == steps;
     if (has_ended && same_end)
-        throw RunHasEnded(
+        throw RunIsComplete(
             fmt::format("{}: its run is complete, with the end {} s; --end with a later time extends it, "
                         "--force starts it again",
                         directory, from->end));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "io/error.hpp"
+#include "io/json.hpp"
 #include "run/recording/checkpoint.hpp"
 #include "run/run_options.hpp"
 
@@ -16,10 +17,17 @@ struct Description;
 
 namespace hilda::run {
 
-/// The run in the directory has ended and cannot be continued, or is not asked to a later end.
+/// The run in the directory has ended and cannot be continued.
 struct RunHasEnded : io::UsageError {
     using UsageError::UsageError;
 };
+/// The run in the directory is complete, and no later end is asked for: there is nothing to do.
+struct RunIsComplete : RunHasEnded {
+    using RunHasEnded::RunHasEnded;
+};
+
+/// summary.json of the run in a directory. io::IoError, io::InvalidInput.
+io::Json earlier_summary(const std::string& directory);
 
 /// A run as its checkpoint identifies it
 struct RunIdentity {
@@ -41,8 +49,8 @@ public:
     void require_checkpoint() const;
     /// The settings of a run, which may continue this one
     RunSettings settings(const RunIdentity& of) const;
-    /// io::UsageError if `by` does not continue this run, or does not end after its checkpoint; io::IoError
-    /// if the checkpoint does not fit the model.
+    /// RunIsComplete if `by` has the end of this run; io::UsageError if it does not continue this run, or
+    /// does not end after its checkpoint; io::IoError if the checkpoint does not fit the model.
     void check_continues(const RunIdentity& by, const RunSettings& settings) const;
 
     std::optional<Checkpoint> from;  ///< empty: there is none, or the run is not continued

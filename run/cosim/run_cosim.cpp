@@ -9,6 +9,7 @@
 #include "run/cosim/grain_process.hpp"
 #include "run/cosim/local_grains.hpp"
 #include "run/cosim/rank_channel.hpp"
+#include "run/earlier_run.hpp"
 #include "run/single_run.hpp"
 
 #include <fmt/format.h>
@@ -104,7 +105,14 @@ int run_rank(const CosimOptions& options)
     o.step = coupling.H(), o.end = end;
     if (file.interval) o.interval = file.interval;
     const io::Interrupt interrupt;
-    const RunResult result = SingleRun(o, lie::scheme(file.integrator), o.output).execute();
+    RunResult result;
+    try {
+        result = SingleRun(o, lie::scheme(file.integrator), o.output).execute();
+    } catch (const RunIsComplete& complete) {
+        if (!o.quiet) io::message(fmt::format("hilda: {}\n", complete.what()));
+        if (o.json) std::cout << earlier_summary(o.output).text();
+        return io::exit_code::done;
+    }
     if (o.json)
         std::cout << summary(result).text();
     else if (!o.quiet)

@@ -5,6 +5,7 @@
 #include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
+#include "run/earlier_run.hpp"
 #include "run/named_model.hpp"
 #include "run/recording/setting_options.hpp"
 #include "run/single_run.hpp"
@@ -72,6 +73,10 @@ int run_model(const run::RunOptions& options)
         run::RunResult result;
         try {
             result = run::SingleRun(options, *schemes[k], directory[k]).execute();
+        } catch (const run::RunIsComplete& complete) {
+            if (!options.quiet) io::message(fmt::format("hilda: {}\n", complete.what()));
+            if (options.json) all.push_back(run::earlier_summary(directory[k]));
+            continue;
         } catch (const run::RunHasEnded& ended) {
             if (directory.size() == 1) throw;
             if (!options.quiet) io::warning(ended.what() + std::string("; skipped"));

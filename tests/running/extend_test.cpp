@@ -86,12 +86,23 @@ TEST_CASE("without --end and --interval a resumed run keeps those of the run", "
     REQUIRE(call(in, with(run, {"b", "--end", "2.5", "--interval", "1e-3"})).code == 0);
     check_same_results(in / "a", in / "b");
 
-    check_refused(in, with(run, {"a", "--resume"}), 2,
-                  "a: its run is complete, with the end 2.5 s; --end with a later time extends");
-    const std::string before = read(in / "a/trajectory.csv");
-    for (const std::string end : {"2.5", "2", "0"})
-        check_refused(in, with(run, {"a", "--resume", "--end", end}), 2,
-                      end == "2.5" ? "is complete" : "--end must be after t = 2.5 s");
+    const std::string before = read(in / "a/trajectory.csv"), record = read(in / "a/summary.json");
+    for (const std::vector<std::string>& end :
+         std::vector<std::vector<std::string>>{{"a", "--resume"}, {"a", "--resume", "--end", "2.5"}}) {
+        CHECK(call(in, with(run, end)).err.empty());
+        const Ended complete = call(in, with({"run", "double_pendulum", "--log-steps", "--output"}, end));
+        CHECK(complete.code == 0);
+        CHECK(complete.out.empty());
+        CHECK(
+            complete.err ==
+            "hilda: a: its run is complete, with the end 2.5 s; --end with a later time extends it, --force "
+            "starts it again\n");
+        const Ended json = call(in, with(with(run, end), {"--json"}));
+        CHECK(json.code == 0);
+        CHECK(nlohmann::ordered_json::parse(json.out) == nlohmann::ordered_json::parse(record));
+    }
+    for (const std::string end : {"2", "0"})
+        check_refused(in, with(run, {"a", "--resume", "--end", end}), 2, "--end must be after t = 2.5 s");
     check_refused(in, with(run, {"a", "--resume", "--end", "3", "--interval", "0.1"}), 2,
                   "belongs to another run: it has --interval 0.001; this run has --interval 0.1; --force "
                   "starts it again");
@@ -111,5 +122,6 @@ TEST_CASE("the option --resume with several integrators extends each of them", "
     CHECK(summary(in / "a/rA-full-1")["counters"]["steps"] == 200);
     const Ended again = run("rA-half-1,rA-full-1", {"--end", "0.2", "--resume"});
     CHECK(again.code == 0);
-    CHECK_THAT(again.err, Contains("a/rA-full-1: its run is complete") && Contains("; skipped"));
+    CHECK_THAT(again.err,
+               Contains("a/rA-half-1: its run is complete") && Contains("a/rA-full-1: its run is complete"));
 }

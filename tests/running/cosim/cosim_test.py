@@ -238,6 +238,9 @@ def one_result(runs):
     runs.finish("cut", "--output", "cut/half", "--resume", "--end", "0.03")
     half = content(runs, "cut/half")
     expect(half == whole, f"a later end: {[name for name in whole if half.get(name) != whole[name]]} differ")
+    for transport in "in-process", "pipe":
+        said = runs.finish("cut", "--output", "cut/half", "--resume", "--end", "0.03", "--transport", transport)
+        expect("its run is complete, with the end 0.03 s" in said and content(runs, "cut/half") == whole, f"a complete run: {said}")
 
 
 def ends_one_by_one(runs, whole):

@@ -30,7 +30,8 @@ struct RunOptions {
 
     std::string output;  ///< directory; "": out/NAME
     bool force = false, resume = false;
-    bool strict = false;  ///< end at the first warning about the solution, see Watch
+    bool accept_step = false;  ///< run with a step above the stability limit of a force
+    bool strict = false;       ///< end at the first warning about the solution, see Watch
     bool plot = false;
     bool error = false;                       ///< estimate the discretisation error
     std::vector<std::string> figure_formats;  ///< empty: png

@@ -117,7 +117,7 @@ void SingleRun::make_simulation()
                           .settings = of_integrator,
                           .watch = options.strict ? Action::strict : Action::stop,
                           // A resumed run was checked when it started.
-                          .accept_unstable = options.force || earlier.from.has_value(),
+                          .accept_unstable = options.accept_step || earlier.from.has_value(),
                           .end = result.end,
                           .interval = options.interval.value_or(0),
                           .dropped_rows = result.start.dropped,

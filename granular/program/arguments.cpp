@@ -103,8 +103,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         "--output", "DIR",
         "output directory, new or empty unless --force or --resume is given; default: out/NAME for NAME.json",
         assign(o.run.output, io::path));
-    app.add_flag("--force", o.run.force,
-                 "overwrite an output directory that is not empty; accept a step above the stability limit");
+    app.add_flag("--force", o.run.force, "overwrite an output directory that is not empty");
+    app.add_flag("--accept-step", o.run.accept_step, "run with a step above the stability limit");
     app.add_flag("--allow-paths", o.allow_paths,
                  "read the tables that the case names also if they are not below the folder of the case");
     app.add_flag("--resume", o.run.resume,

@@ -109,21 +109,21 @@ private:
         insert_particles(c);
     }
 
-    /// Rejects a step above the stability limit, unless --force is given, or was given when the run that is
-    /// resumed was started.
+    /// Rejects a step above the stability limit, unless --accept-step is given, or was given when the run that
+    /// is resumed was started.
     void check_step()
     {
         const auto warn_at = [&](const std::string& pointer, const std::string& what) {
             warn(c.source.place(pointer) + ": " + what);
         };
         const auto is_accepted = [&](bool is_of_stage) {
-            if (o.force || (is_of_stage && o.resume)) return true;
+            if (o.accept_step || (is_of_stage && o.resume)) return true;
             const bool other_laws = std::any_of(from.pointers.begin(), from.pointers.end(),
                                                 [](const std::string& p) { return p.starts_with("/laws"); });
             return o.resume && earlier_case(o.output) && !other_laws;  // at the start of the run
         };
         const auto above = [&](const std::string& pointer, const std::string& what) {
-            if (!is_accepted(pointer != "/step")) c.source.fail(pointer, what + "; --force overrides");
+            if (!is_accepted(pointer != "/step")) c.source.fail(pointer, what + "; --accept-step accepts it");
             warn_at(pointer, what);
         };
         granular::check_step(c, above, warn_at);

@@ -82,7 +82,7 @@ WorldObject::WorldObject(const std::string& text, const std::string& file, const
         warnings.push_back(c.source.place(pointer) + ": " + what);
     };
     const auto above = [&](const std::string& pointer, const std::string& what) {
-        if (!settings.force) c.source.fail(pointer, what + "; --force overrides");
+        if (!settings.force) c.source.fail(pointer, what + "; --accept-step accepts it");
         warn(pointer, what);
     };
     check_step(c, above, warn);

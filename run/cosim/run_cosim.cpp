@@ -55,6 +55,7 @@ std::unique_ptr<granular::Exchange> grains_of_process(const CosimFile& file, dou
     for (const auto& [given, name] : {std::pair{o.quiet || o.json, "--quiet"},
                                       {o.verbose, "--verbose"},
                                       {o.force, "--force"},
+                                      {o.accept_step, "--accept-step"},
                                       {o.resume, "--resume"},
                                       {o.strict, "--strict"},
                                       {o.allow_paths, "--allow-paths"}})

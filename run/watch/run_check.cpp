@@ -95,7 +95,7 @@ std::string check_run(const dae::Model& model, const lie::State& start, const li
                              (force.may_be_implicit() && scheme.supports.contains(lie::Feature::springs)
                                   ? "; \"implicit\": true in this force removes this limit"
                                   : "") +
-                             "; --force accepts it");
+                             "; --accept-step accepts it");
     return what;
 }
 

@@ -148,7 +148,7 @@ Finding Watch::stability_finding() const
     return {
         "unstable_step",
         fmt::format("the step {:g} s is above the stability limit of {} at t = {:.6g} s; reduce the step, or "
-                    "accept it with --force",
+                    "accept it with --accept-step",
                     grid.h, model.forces()[static_cast<size_t>(values.unstable.place)]->label(),
                     values.unstable.t)};
 }

@@ -56,15 +56,16 @@ Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
             context.refuse("the reference " + scheme->name +
                            " chooses its own steps: use --reference-rtol instead of --reference-step");
         rtol = options.reference_rtol.value_or(own_rtol);
-        if (!options.force && evaluated.smallest_rtol > 0 && rtol * finer > evaluated.smallest_rtol * slack)
+        if (!options.accept_reference && evaluated.smallest_rtol > 0 &&
+            rtol * finer > evaluated.smallest_rtol * slack)
             context.refuse(fmt::format(
                 "the reference {} at rtol {} is too coarse for runs with rtol {}: its rtol must be {} "
-                "times smaller; --force accepts it",
+                "times smaller; --accept-reference accepts it",
                 scheme->name, run::step_text(rtol), run::step_text(evaluated.smallest_rtol), finer));
-        if (!options.force && evaluated.smallest_step > 0 && rtol > coarsest_rtol * slack)
+        if (!options.accept_reference && evaluated.smallest_step > 0 && rtol > coarsest_rtol * slack)
             context.refuse(
                 fmt::format("the reference {} at rtol {} is coarser than {}, the limit for runs with a fixed "
-                            "step: reduce --reference-rtol; --force accepts it",
+                            "step: reduce --reference-rtol; --accept-reference accepts it",
                             scheme->name, run::step_text(rtol), run::step_text(coarsest_rtol)));
         return;
     }
@@ -74,16 +75,16 @@ Reference::Reference(const StudyContext& context, const Evaluated& evaluated)
     if (!options.reference_step && !(evaluated.smallest_step > 0))
         context.refuse("the reference " + scheme->name +
                        " needs --reference-step, because no run of the study has a fixed step");
-    if (!options.force && scheme->order < evaluated.highest_order)
+    if (!options.accept_reference && scheme->order < evaluated.highest_order)
         context.refuse(
             fmt::format("the reference {} has order {}, lower than order {} of a run: choose another "
-                        "integrator; --force accepts it",
+                        "integrator; --accept-reference accepts it",
                         scheme->name, scheme->order, evaluated.highest_order));
     h = options.reference_step.value_or(evaluated.smallest_step / 10);
-    if (!options.force && evaluated.smallest_step > 0 && !(h * slack < evaluated.smallest_step))
+    if (!options.accept_reference && evaluated.smallest_step > 0 && !(h * slack < evaluated.smallest_step))
         context.refuse(
             fmt::format("the reference {} at h = {} s is coarser than a run at h = {} s: its step must be "
-                        "smaller; --force accepts it",
+                        "smaller; --accept-reference accepts it",
                         scheme->name, run::step_text(h), run::step_text(evaluated.smallest_step)));
 }
 
@@ -222,7 +223,7 @@ lie::Trajectory Reference::by_integrator(const Benchmark& c, const lie::Scheme& 
              .grid = grid,
              .settings = settings,
              .watch = is_coarser ? run::Watch::Action::record : run::Watch::Action::stop,
-             .accept_unstable = is_coarser || options.force});
+             .accept_unstable = is_coarser || options.accept_reference});
         lie::TrajectoryRecorder rows(simulation.grid());
         simulation.observe(rows);
         simulation.run().throw_failure();

@@ -19,9 +19,9 @@ Evaluated finest(const Schemes& schemes, double step, double rtol = 0);
 /// Computes the reference solutions of benchmarks.
 class Reference {
 public:
-    /// io::UsageError, unless --force is given, for a reference integrator that is not more accurate than the
-    /// runs: its step must be smaller and its order not lower than theirs; its rtol must be ten times smaller
-    /// than theirs, and at most 1e-8 for runs with a fixed step.
+    /// io::UsageError, unless --accept-reference is given, for a reference integrator that is not more
+    /// accurate than the runs: its step must be smaller and its order not lower than theirs; its rtol must be
+    /// ten times smaller than theirs, and at most 1e-8 for runs with a fixed step.
     Reference(const StudyContext& context, const Evaluated& evaluated);
 
     /// Computes the reference solution of each benchmark at its instants, with a row for each from t = 0 on.

@@ -52,13 +52,14 @@ struct StudyOptions {
 
     std::string output;  ///< existing output directory; "": no files (--json without --output)
     int jobs = 0;  ///< number of concurrent runs; 0: the number of cores, or 1 in a study that measures time
-    bool strict = false;    ///< exit code 4 if the watch over a run has a warning
-    bool check = false;     ///< evaluate all acceptance criteria; exit code 6 if one fails
-    bool all = false;       ///< the complete default selection of a study that has a short one
-    bool force = false;     ///< accept a non-empty directory and a reference solution that is too coarse
-    bool resume = false;    ///< continue the interrupted study of the output directory
-    bool quiet = false;     ///< print no result, no warnings and no progress
-    run::Shard shard = {};  ///< the runs that are computed
+    bool strict = false;            ///< exit code 4 if the watch over a run has a warning
+    bool check = false;             ///< evaluate all acceptance criteria; exit code 6 if one fails
+    bool all = false;               ///< the complete default selection of a study that has a short one
+    bool force = false;             ///< accept a non-empty directory
+    bool accept_reference = false;  ///< accept a reference solution that is too coarse or unstable
+    bool resume = false;            ///< continue the interrupted study of the output directory
+    bool quiet = false;             ///< print no result, no warnings and no progress
+    run::Shard shard = {};          ///< the runs that are computed
     std::vector<Expectation> expect;
 };
 

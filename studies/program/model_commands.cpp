@@ -60,8 +60,8 @@ void add_run_options(CLI::App& c, RunArguments& to)
     add_fix_initial(c, "", o.fix_initial);
     add_allow_paths(c, "the model", o.allow_paths);
     add_output(c, "--force or --resume", "out/NAME", o.output);
-    c.add_flag("--force", o.force,
-               "overwrite an output directory that is not empty; accept a step above the stability limit");
+    c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
+    c.add_flag("--accept-step", o.accept_step, "run with a step above the stability limit of a force");
     c.add_flag(
         "--resume", o.resume,
         "continue the run in the output directory from its last checkpoint; a complete run continues to a "
@@ -115,6 +115,8 @@ void add_cosim_options(CLI::App& c, run::CosimOptions& to)
     add_allow_paths(c, "a file", o.allow_paths);
     add_output(c, "--force or --resume", "out/NAME", o.output);
     c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
+    c.add_flag("--accept-step", o.accept_step,
+               "run with a step above the stability limit of a force or of the grains");
     c.add_flag(
         "--resume", o.resume,
         "continue the run in the output directory from its last checkpoint; a complete run continues to a "

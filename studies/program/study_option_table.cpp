@@ -280,10 +280,17 @@ std::vector<StudyOption> options_of_experiment()
              .scope = numerical},
             &O::seed, io::seed),
         of_all(flag({.name = "--force",
-                     .help = "overwrite an output directory that is not empty; accept a reference solution "
-                             "that is too coarse",
+                     .help = "overwrite an output directory that is not empty",
                      .scope = Scope::none},
                     &O::force)),
+        with(
+            "--reference",
+            flag({.name = "--accept-reference",
+                  .help =
+                      "accept a reference solution that is coarser than the runs, or whose step is above the "
+                      "stability limit of a force",
+                  .scope = Scope::none},
+                 &O::accept_reference)),
         of_all(one({.name = "--jobs",
                     .value = "N",
                     .help = "number of concurrent runs; default: the number of cores, or 1 in a study that "

@@ -66,7 +66,7 @@ def entries(runs, case):
     refused("/laws/0/mu", r'mu must not be negative, got -1 \(from --set "/laws/0/mu=-1"\)', "--set", "/laws/0/mu=-1")
     refused("/steps", r'unknown key.*\(from --set "/steps=1"\)', "--set", "/steps=1")
     refused("/laws", r'--set "/laws/7/mu=1": there is no "7" in a list of 2', "--set", "/laws/7/mu=1")
-    refused("/step", r"step must not be above .*; --force overrides \(from --step 1e-3\)", "--step", "1e-3")
+    refused("/step", r"step must not be above .*; --accept-step accepts it \(from --step 1e-3\)", "--step", "1e-3")
     refused("/end", r"end must be at most 9e15 steps", "--end", "1e30")
     refused("/end", r"end must be at least one step, got 1e-08", "--end", "1e-8")
     runs.refused("none", 3, "none.json: does not exist")
@@ -77,8 +77,8 @@ def entries(runs, case):
                f"{ended.returncode}: {ended.stderr}")
 
     coarse = runs.case("coarse", step=3e-5, end=3e-5)
-    runs.refused(coarse, 3, r"coarse.json:1:\d+ \(/step\): step must not be above .* got 3e-05; --force")
-    expect("warning" in runs.finish(coarse, "--force"), "an unstable step is accepted with --force")
+    runs.refused(coarse, 3, r"coarse.json:1:\d+ \(/step\): step must not be above .* got 3e-05; --accept-step")
+    expect("warning" in runs.finish(coarse, "--accept-step"), "an unstable step is accepted with --accept-step")
 
 
 def failures(runs):

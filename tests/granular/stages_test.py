@@ -252,7 +252,7 @@ def errors(runs):
     refused("/stages/0/end", "end must not be given together with duration", dict(one, duration=1, end=1))
     refused("/stages/0/on_timeout", "on_timeout is only for a stage with until and a duration or end", dict(one, on_timeout="fail"))
     refused("/stages/0/until", "one of the keys kinetic_energy and share is required", dict(one, until={}))
-    refused("/stages/0/set", "the stability limit of the step is .* with these laws, the step is 5e-06; --force overrides",
+    refused("/stages/0/set", "the stability limit of the step is .* with these laws, the step is 5e-06; --accept-step accepts it",
             {"name": "hard", "set": {"/laws/0/normal": {"law": "hertz"}, "/laws/1/normal/k_n": 1e9}},
             laws=[CASE["laws"][0], {"between": ["glass", "steel"], "mu": 0.3, "normal": {"law": "hooke", "k_n": 1e3, "gamma_n": 10}}])
     tables = "the name of a group must not be empty or contain commas, quotes and control characters, because it is in tables, got "

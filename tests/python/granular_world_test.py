@@ -286,7 +286,7 @@ class Cases(unittest.TestCase):
 
     def test_errors_have_their_place(self):
         for case, text in ((box(step=-1), r"case:\d+:\d+ \(/step\): step must be positive"),
-                           (box(step=1), r"\(/step\): step must not be above .*, got 1; --force overrides"),
+                           (box(step=1), r"\(/step\): step must not be above .*, got 1; --accept-step accepts it"),
                            (box(end=1e-7), r"\(/end\): end must be at least one step"),
                            (box(steps=3), "steps"), ({}, "hilda_case")):
             with self.subTest(text=text):

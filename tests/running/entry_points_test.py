@@ -74,9 +74,9 @@ class EntryPoints(unittest.TestCase):
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertEqual(self.findings_of_study("study"), [of_run])
 
-        # the step of the runs and of the reference is the same: --force
+        # the step of the runs and of the reference is the same: --accept-reference
         ended = self.call("study", "convergence", "--problem", model, *options, "--steps", f"{step}", "--reference", integrator,
-                          "--reference-step", str(step), "--force", "--no-plot", "--output", "reference")
+                          "--reference-step", str(step), "--accept-reference", "--no-plot", "--output", "reference")
         of_reference = f"warning: the reference {integrator} of {model.removesuffix('.json')}: {of_run}"
         # A reference has a row at each instant: its energy is evaluated at more nodes.
         self.assertIn(without_numbers(of_reference), without_numbers(ended.stderr))
@@ -110,7 +110,7 @@ class EntryPoints(unittest.TestCase):
         found = "the step 0.0025 s is above 0.001999 s, the stability limit of force 's' in an explicit step"
         step = ("--integrator", "rA-half-1-momentum", "--step", "2.5e-3")
         fit = ("--data", self.data("mass.rx"), "--parameter", "/bodies/0/mass=1")
-        # --reference: runs with a smaller step than the reference, which --force would accept
+        # --reference: runs with a smaller step than the reference, which --accept-reference would accept
         reference = ("--problem", "spring.json", "--integrator", "rA-half-1-momentum", "--steps", "2.5e-2", "--end", "0.1",
                      "--reference", "rA-half-1-momentum", "--reference-step", "2.5e-3")
         for words in (("run", "spring.json", *step), ("fit", "spring.json", *fit, *step), ("study", "compare", *reference)):

@@ -50,7 +50,8 @@ TEST_CASE("a fine run of another integrator gives the same errors as the referen
         }
 }
 
-TEST_CASE("a reference that is coarser than a run is rejected without --force", "[studies][reference]")
+TEST_CASE("a reference that is coarser than a run is rejected without --accept-reference",
+          "[studies][reference]")
 {
     const Scratch in;
     for (const char* step : {"5e-3", "1e-2"}) {
@@ -58,16 +59,16 @@ TEST_CASE("a reference that is coarser than a run is rejected without --force", 
             check_refused(in, with(convergence, {"--reference", "rA-half-2", "--reference-step", step}), 2,
                           message);
     }
-    const Ended forced =
-        study(in, {"--reference", "rA-half-2", "--reference-step", "1e-3", "--steps", "1e-3", "--force"});
+    const Ended forced = study(in, {"--reference", "rA-half-2", "--reference-step", "1e-3", "--steps", "1e-3",
+                                    "--accept-reference"});
     CHECK(forced.code != 0);  // --steps is given twice
     CHECK(call(in, {"study", "compare", "--end", "0.1", "--steps", "1e-3", "--integrator", "rA-half-1",
                     "--reference", "rA-half-2", "--reference-step", "1e-3", "--no-plot", "--quiet"})
               .code == 2);
-    CHECK(
-        call(in, {"study", "compare", "--end", "0.1", "--steps", "1e-3", "--integrator", "rA-half-1",
-                  "--reference", "rA-half-2", "--reference-step", "1e-3", "--no-plot", "--quiet", "--force"})
-            .code == 0);
+    CHECK(call(in, {"study", "compare", "--end", "0.1", "--steps", "1e-3", "--integrator", "rA-half-1",
+                    "--reference", "rA-half-2", "--reference-step", "1e-3", "--no-plot", "--quiet",
+                    "--accept-reference"})
+              .code == 0);
 }
 
 TEST_CASE("an invalid reference is reported in one line", "[studies][reference]")

@@ -48,12 +48,12 @@ TEST_CASE("a step above the stability limit of a force is rejected with its name
     CHECK_THROWS_AS(m.run(), io::UsageError);
     CHECK_THROWS_WITH(m.run(),
                       "run: the step 0.015 s is above 0.0147 s, the stability limit of bristle 'brush' in an "
-                      "explicit step; --force accepts it");
+                      "explicit step; --accept-step accepts it");
     CHECK_FALSE(tests::fs::exists(m.directory()));
 
-    m.options.force = true;
+    m.options.accept_step = true;
     CHECK(m.run().step == 0.015);
-    m.options.force = false;
+    m.options.accept_step = false;
     m.options.step = 0.0147;  // the limit stated in the message
     CHECK(m.run().status == "ok");
     m.options.step.reset();
@@ -69,13 +69,13 @@ TEST_CASE("an adaptive scheme is rejected if a force has internal state variable
     CHECK_FALSE(tests::fs::exists(m.directory()));
 }
 
-TEST_CASE("a killed run with --force is resumed and gives the result of an uninterrupted run",
+TEST_CASE("a killed run with --accept-step is resumed and gives the result of an uninterrupted run",
           "[studies][stable_step][resume]")
 {
     BristleModel m;
     m.options.step = 0.016;
     m.options.end = 30;
-    m.options.force = true;
+    m.options.accept_step = true;
     REQUIRE(m.run().status == "ok");
     const std::string whole = tests::read(m.in / "out/trajectory.csv");
 
@@ -102,7 +102,7 @@ TEST_CASE("a killed run with --force is resumed and gives the result of an unint
     REQUIRE(tests::fs::file_size(m.in / "out/trajectory.csv") == 1 << 13);
     REQUIRE(whole.size() > 10 << 13);
 
-    m.options.force = false;
+    m.options.accept_step = false;
     m.options.resume = true;
     m.options.checkpoint = 0;
     const run::RunResult resumed = m.run();
@@ -151,11 +151,11 @@ TEST_CASE("a step above the stability limit of a damper is rejected for explicit
         CHECK(refused.err == std::string("hilda: error: run: the step 0.001 s is above ") + limit +
                                  ", the stability limit of force 'damper' in an explicit step" +
                                  (has_rule ? R"(; "implicit": true in this force removes this limit)" : "") +
-                                 "; --force accepts it\n");
+                                 "; --accept-step accepts it\n");
         CHECK(run(scheme, {"--step", "4.99e-5", "--quiet"}).code == 0);
     }
     CHECK_THAT(
-        run("rA-half-1-momentum", {"--force"}).err,
+        run("rA-half-1-momentum", {"--accept-step"}).err,
         Catch::StartsWith("hilda: warning: the step 0.001 s is above 4.999e-05 s, the stability limit"));
     for (const char* scheme : {"rA-full-1-exact", "rp-bdf2", "ida-rp"}) CHECK(run(scheme).code == 0);
 }
@@ -226,7 +226,7 @@ TEST_CASE("a run that fails above the stability limit of a force names the force
  "forces": [{"name": "brake", "type": "torsion-spring", "body_i": "ground", "body_j": "bar", "axis_bar_i": [1, 0, 0],
    "axis_bar_j": [1, 0, 0], "stiffness": 0, "damping": 1e4, "free_angle": 0}]})");
     // The moment of inertia about the pin is 2 kg m^2.
-    const tests::Ended forced = tests::call(in, {"run", "m.json", "--force", "--output", "a"});
+    const tests::Ended forced = tests::call(in, {"run", "m.json", "--accept-step", "--output", "a"});
     CHECK(forced.code == 4);
     CHECK_THAT(forced.err,
                Catch::Contains("the step is above 0.0002 s, the stability limit of force 'brake'") &&

@@ -36,7 +36,7 @@ struct Result {
 Result run_of(const Scratch& in, const std::string& model, const std::vector<std::string>& options)
 {
     write(in / "m.json", model);
-    Result r{.ended = call(in, with({"run", "m.json", "--force"}, options)), .summary = {}};
+    Result r{.ended = call(in, with({"run", "m.json", "--force", "--accept-step"}, options)), .summary = {}};
     if (fs::exists(in / "out/m/summary.json")) r.summary = summary(in / "out/m");
     return r;
 }

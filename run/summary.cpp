@@ -179,9 +179,12 @@ void print(const RunResult& r, std::ostream& out)
                      r.invariants.energy_start, r.invariants.energy_end, r.invariants.energy_drift));
     line("constraints", fmt::format("{:.1e} m or rad, largest residual", r.invariants.constraint_norm));
     for (size_t k = 0; k < r.invariants.contact.size(); ++k)
-        line(k == 0 ? "contacts" : "",
-             fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k], r.invariants.contact[k].F_N_least,
-                         r.invariants.contact[k].F_N_most));
+        if (r.invariants.contact[k].F_N_least > r.invariants.contact[k].F_N_most)
+            line(k == 0 ? "contacts" : "", r.contacts[k] + ": no row");
+        else
+            line(k == 0 ? "contacts" : "",
+                 fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k],
+                             r.invariants.contact[k].F_N_least, r.invariants.contact[k].F_N_most));
     for (const EventCount& e : r.located)
         line(&e == r.located.data() ? "events" : "",
              e.name + ": " +

@@ -136,7 +136,8 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         "of the particles from stdout (hilda cosim)");
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
     app.add_flag("--strict", o.run.strict, "end with exit code 4 at a warning of the watch or of a stage");
-    app.add_flag("--json", o.run.json, "print the summary as JSON on stdout, and nothing else");
+    app.add_flag("--json", o.run.json,
+                 "print the summary as JSON on stdout, and nothing else; after laws: print the list as JSON");
     app.add_flag("--quiet", o.run.quiet, "print no result, no warnings and no progress");
     app.add_flag("-v,--verbose", o.run.verbose, "report steps, checkpoints and resumption on stderr");
     app.allow_extras();  // refuse_extras() names the nearest option
@@ -179,6 +180,7 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
     if (o.run.file == "export")
         of_all.insert(
             {"--set", "--seed", "--step", "--end", "--interval", "--output", "--force", "--allow-paths"});
+    if (o.run.file == "laws") of_all.insert("--json");
     for (const CLI::Option* option : app.get_options())
         if (option->count() > 0 && !of_all.contains(option->get_name()) && o.case_only_option.empty())
             o.case_only_option = option->get_name();

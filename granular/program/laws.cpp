@@ -20,4 +20,18 @@ std::string list_of_laws()
     return io::wrapped_help(text);
 }
 
+io::Json laws_as_json()
+{
+    io::Json all = io::Json::array();
+    for_each_kind([&]<class Laws>(const char* kind, const char* standard, Laws PairLaw::*) {
+        Laws::for_each([&](const auto& law) {
+            all.push_back({{"kind", kind},
+                           {"name", law.name},
+                           {"description", law.description},
+                           {"is_default", std::string(law.name) == standard}});
+        });
+    });
+    return all;
+}
+
 }  // namespace hilda::granular

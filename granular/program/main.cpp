@@ -86,6 +86,8 @@ void print_text(const Options& o)
         write_cases(o.name, o.write_to);
     else if (o.run.file == "cases")
         std::puts(list_of_cases().c_str());
+    else if (o.run.file == "laws" && o.run.json)
+        std::fputs(laws_as_json().text().c_str(), stdout);
     else if (o.run.file == "laws")
         std::puts(list_of_laws().c_str());
     else

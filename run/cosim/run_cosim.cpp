@@ -3,6 +3,7 @@
 
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/message.hpp"
 #include "io/program.hpp"
 #include "lie/schemes.hpp"
 #include "run/cosim/grain_coupling.hpp"

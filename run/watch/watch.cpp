@@ -164,7 +164,7 @@ Finding Watch::energy_finding() const
     if (values.unstable.place >= 0)
         text += fmt::format("; the step is above the stability limit of {}",
                             model.forces()[static_cast<size_t>(values.unstable.place)]->label());
-    return {"energy_rises", text + "; reduce the step"};
+    return {"energy_rises", text + (scheme.adaptive ? "; reduce --rtol" : "; reduce the step")};
 }
 
 std::vector<Finding> Watch::findings() const

@@ -150,6 +150,7 @@ void add_kinematics_options(CLI::App& c, run::KinematicsOptions& o)
     add_output(c, "--force", "out/NAME", o.output);
     c.add_flag("--force", o.force, "overwrite an output directory that is not empty");
     io::add_sink_options<run::RunSetup>(c, o.outputs);
+    c.get_option("--log-steps")->group("");  // for integrators: it is refused, and not in the help
     add_json(c, o.json);
     c.add_flag("--quiet", o.quiet, "print no result and no warnings");
 }

@@ -133,6 +133,16 @@ def wrong_instruction_set(runs, case):
     expect(version.returncode == 0 and "vector instructions: HILDA_ISA: must be" in version.stdout, f"{version}")
 
 
+def list_of_laws(runs):
+    """The list as JSON has the laws of the text."""
+    laws, text = json.loads(runs.run("laws", "--json").stdout), runs.run("laws").stdout
+    expect(len(laws) > 10 and all(set(law) == {"kind", "name", "description", "is_default"} for law in laws), f"{laws}")
+    expect(all(law["name"] in text for law in laws) and sum(law["is_default"] for law in laws) == len({law["kind"] for law in laws}),
+           f"one default of each kind: {laws}")
+    refused = runs.run("cases", "--json")
+    expect(refused.returncode == 2 and "--json: is valid for cases only" in refused.stderr, refused.stderr)
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(sys.argv[1], folder)
@@ -145,7 +155,8 @@ def main():
         strict(runs, short, summary["watch"])
         waiting_threads(runs, particles)
         wrong_instruction_set(runs, short)
-    print("changed entries, old names, --resume, --strict, waiting threads and a wrong instruction set")
+        list_of_laws(runs)
+    print("changed entries, old names, --resume, --strict, waiting threads, a wrong instruction set and the list of laws")
 
 
 if __name__ == "__main__":

@@ -259,6 +259,32 @@ TEST_CASE("an interrupted reproduction continues, and finished studies are kept"
     tests::check_refused(in, tests::with(again, {"--full"}), 2, "--resume needs the same mode: ");
 }
 
+TEST_CASE("hilda reproduce counts the studies without a figure, and --resume draws them",
+          "[studies][reproduce][resume]")
+{
+    const tests::Scratch in;
+    if (tests::call(in, {"info"}).out.find("matplotlib 3") == std::string::npos) return;
+    const std::vector<std::string> command = {"reproduce", "--chapter", "5", "--output", "a"};
+    const tests::Ended without = tests::call(in, command, {.python = "/nowhere/python3"});
+    CAPTURE(without.out, without.err);
+    REQUIRE(without.code == 0);
+    CHECK_THAT(
+        without.out,
+        Contains("; no figure: hilda: warning: no figures: ") &&
+            Contains("2 passed, 0 failed, 0 without criterion, 0 with an error, 2 without a figure; "));
+    CHECK_THAT(without.err,
+               Contains("hilda: warning: 2 studies without a figure; the same command with --resume draws"));
+    const auto computed = tests::fs::last_write_time(in / "a/evolving-contact/study.csv");
+
+    const tests::Ended drawn = tests::call(in, tests::with(command, {"--resume"}));
+    CAPTURE(drawn.out, drawn.err);
+    CHECK(drawn.code == 0);
+    CHECK(drawn.out.find("without a figure") == std::string::npos);
+    CHECK(drawn.err.find("without a figure") == std::string::npos);
+    CHECK(tests::fs::last_write_time(in / "a/evolving-contact/study.csv") == computed);
+    CHECK_THAT(Page(in / "a").study("evolving-contact").section, Contains("<img src=\"evolving-contact/"));
+}
+
 TEST_CASE("a reproduction that is interrupted between two studies continues with the next one",
           "[studies][reproduce][resume]")
 {

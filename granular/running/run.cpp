@@ -109,8 +109,8 @@ private:
         insert_particles(c);
     }
 
-    /// Rejects a step above the stability limit, unless --accept-step is given, or was given when the run that
-    /// is resumed was started.
+    /// Rejects a step above the stability limit, unless --accept-step is given, or was given when the run
+    /// that is resumed was started.
     void check_step()
     {
         const auto warn_at = [&](const std::string& pointer, const std::string& what) {

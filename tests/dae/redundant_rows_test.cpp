@@ -304,43 +304,44 @@ TEST_CASE("of a cam in a plane the redundant row of the guide is dropped, and tw
     const auto height = [](double t) {
         return e * std::sin(W * t) + std::sqrt(R * R - std::pow(e * std::cos(W * t), 2)) + 0.2;
     };
-    const std::string curve = R"({"name": "track", "type": "point-on-curve", "body_i": "rod", "body_j": "cam",
-        "s_bar_p_i": [0, 0, -0.2], "curve": ["0.03+0.1*cos(s)", 0, "0.1*sin(s)"], "s": 1.8754889808102941
-})";
+    const std::string curve =
+        R"json({"name": "track", "type": "point-on-curve", "body_i": "rod", "body_j": "cam",
+        "s_bar_p_i": [0, 0, -0.2], "curve": ["0.03+0.1*cos(s)", 0, "0.1*sin(s)"], "s": 1.8754889808102941})json";
     const auto model = [&](const std::string& more) {
-    return R"({"hilda_model": 1, "name": "cam", "gravity": [0, 0, 0], "bodies": [
+        return R"json({"hilda_model": 1, "name": "cam", "gravity": [0, 0, 0], "bodies": [
          {"name": "cam", "mass": 1, "inertia": [0.01, 0.01, 0.01], "r": [0, 0, 0], "omega": [0, "-2*pi", 0]},
          {"name": "rod", "mass": 0.2, "inertia": [0.001, 0.001, 0.001], "r": [0, 0, 0.2953939201416946],
           "r_dot": [0, 0, 0.18849555921538758]}], "constraints": [
-         {"name": "shaft", "type": "revolute", "body_i": "ground", "body_j": "cam", "axis_bar_i": [0, 1, 0], "axis_bar_j": [0, 1, 0]},
+         {"name": "shaft", "type": "revolute", "body_i": "ground", "body_j": "cam", "axis_bar_i": [0, 1, 0],
+          "axis_bar_j": [0, 1, 0]},
          {"name": "drive", "type": "hinge-driver", "body_i": "ground", "body_j": "cam", "axis_bar_i": [0, -1, 0],
           "axis_bar_j": [0, -1, 0], "angle": "2*pi*t"},
-         {"name": "guide", "type": "translational", "body_i": "ground", "body_j": "rod", "s_bar_q_j": [0, 0, -0.2953939201416946],
-          "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]}, )" +
-           curve + more + "]}";
+         {"name": "guide", "type": "translational", "body_i": "ground", "body_j": "rod",
+          "s_bar_q_j": [0, 0, -0.2953939201416946], "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]}, )json" +
+               curve + more + "]}";
     };
-Description cam = read_model(model(""), "cam.json");
-const StartReport report = dae::start(cam);
-CHECK(report.degrees_of_freedom == 0);
-REQUIRE(report.dropped.size() == 1);
-CHECK_THAT(report.dropped[0], Contains("constraint 'guide'"));
-for (const char* name : {"rA-half-1", "rA-half-2", "rA-rkmk-4"}) {
-    INFO(name);
-    const auto integrator = lie::scheme(name).make(*cam.model, {});
-    for (const auto& row : lie::march(cam.x, *integrator, lie::TimeGrid::over(0.4, 1e-3, 0.1)).row)
-        CHECK(row.body[1].r[2] == Approx(height(row.t)).margin(1e-9));
-}
+    Description cam = read_model(model(""), "cam.json");
+    const StartReport report = dae::start(cam);
+    CHECK(report.degrees_of_freedom == 0);
+    REQUIRE(report.dropped.size() == 1);
+    CHECK_THAT(report.dropped[0], Contains("constraint 'guide'"));
+    for (const char* name : {"rA-half-1", "rA-half-2", "rA-rkmk-4"}) {
+        INFO(name);
+        const auto integrator = lie::scheme(name).make(*cam.model, {});
+        for (const auto& row : lie::march(cam.x, *integrator, lie::TimeGrid::over(0.4, 1e-3, 0.1)).row)
+            CHECK(row.body[1].r[2] == Approx(height(row.t)).margin(1e-9));
+    }
 
-std::string second = ", " + curve;
-second.replace(second.find("track"), 5, "again");
-Description twice = read_model(model(second), "cam.json");
-try {
-    dae::start(twice);
-    FAIL("accepted");
-} catch (const lie::NumericalFailure& failure) {
-    CHECK(failure.status == "contact_rank");
-    CHECK_THAT(failure.what(),
-               Contains("'again'") &&
-                   Catch::EndsWith("With \"redundant\": \"keep\" in the model file all rows are kept"));
-}
+    std::string second = ", " + curve;
+    second.replace(second.find("track"), 5, "again");
+    Description twice = read_model(model(second), "cam.json");
+    try {
+        dae::start(twice);
+        FAIL("accepted");
+    } catch (const lie::NumericalFailure& failure) {
+        CHECK(failure.status == "contact_rank");
+        CHECK_THAT(failure.what(),
+                   Contains("'again'") &&
+                       Catch::EndsWith("With \"redundant\": \"keep\" in the model file all rows are kept"));
+    }
 }

@@ -41,7 +41,7 @@ TEST_CASE("a table is read with its comments, blanks and line ends", "[io][csv]"
     CHECK_THROWS_WITH(table("t\tx\n0\t1\n"),
                       Catch::Contains("a.csv:1: the names of the columns are separated by tabs; "));
     CHECK(table("a;b,c\n1,2\n") == std::vector<Cells>{{"a;b", "c"}, {"1", "2"}});
-    for (const std::string text :
+    for (const std::string& text :
          {std::string("\xFF\xFEt\0,\0x\0", 8), std::string("\xFE\xFF\0t\0,", 6), std::string("t\0,\0", 4)})
         CHECK_THROWS_WITH(table(text),
                           "a.csv: is a text in UTF-16 or binary data; a table is a text in UTF-8");

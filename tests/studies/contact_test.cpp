@@ -42,8 +42,8 @@ TEST_CASE("run and check accept a valid model file with contacts and reject an i
     CHECK(bad.code == io::exit_code::invalid_input);
     CHECK_THAT(bad.err, Catch::Contains("bad.json:4:46 (/contacts/0/surface_i/radius): radius must be "
                                         "positive, got -1"));
-    const Ended stiff =
-        call(in, {"run", "good.json", "--no-plot", "--force", "--set", "/contacts/0/normal/stiffness=1e8"});
+    const Ended stiff = call(in, {"run", "good.json", "--no-plot", "--force", "--accept-step", "--set",
+                                  "/contacts/0/normal/stiffness=1e8"});
     CHECK(stiff.code == io::exit_code::done);
     CHECK_THAT(stiff.err, Catch::Contains("the stability limit of contact 'ball-bowl'"));
 }

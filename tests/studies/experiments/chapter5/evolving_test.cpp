@@ -263,7 +263,7 @@ TEST_CASE(
                                      "'ball-bowl'"));
     CHECK_FALSE(fs::exists(in / "a"));
     CHECK(run({"--step", "4.638e-3", "--interval", "0"}).code == 0);
-    const Ended forced = run({"--step", "5e-3", "--force"});
+    const Ended forced = run({"--step", "5e-3", "--force", "--accept-step"});
     CHECK(forced.code == 0);
     CHECK_THAT(forced.err, Contains("0.004638 s"));
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Row 18: hostile paths as model, case, table of a fill and output folder are refused within 1 s."""
+"""Row 18: hostile paths as model, case, table of a fill, samples of a model and output folder are refused within 1 s."""
 import os
 
 import matrix
@@ -46,6 +46,12 @@ def main():
                      "cases/../../secret"):
             (folder / "cases/bad.json").write_text(models.text(case_with(path)))
             refused(f"table {path!r}", [row.granular, "cases/bad.json", "--output", "out"], (3,))
+        for path in ("../table.csv", str(folder / "table.csv"), "link.csv", "/etc/passwd", "/dev/zero", "../secret"):
+            model = models.valid()
+            model["constraints"] = [{"name": "motor", "type": "hinge-driver", "body_i": "ground", "body_j": model["bodies"][0]["name"],
+                                     "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1], "angle": {"file": path, "column": "x"}}]
+            (folder / "cases/bad.json").write_text(models.text(model))
+            refused(f"samples {path!r}", [row.hilda, "check", "cases/bad.json"], (3,))
         for path in ("secret", "secret/out", "/dev/null", "/proc/out"):
             refused(f"output {path!r}", [row.hilda, "run", "bench.json", "--end", "0.01", "--output", path], (2, 5))
     row.end()

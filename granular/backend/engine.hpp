@@ -134,7 +134,7 @@ public:
     /// which contain those on boundaries, and with a watch those on fixed particles; it computes the other
     /// ones in advance(). `path`: upper bound of the path of any particle relative to any boundary since
     /// find_neighbours() [m].
-    virtual void find_loads(const Domain& domain, float h, bool store, double path) = 0;
+    virtual void find_loads(const Domain& domain, const LoadTimes& times, bool store, double path) = 0;
     /// See advance.
     virtual float advance(const StepParameters& step) = 0;
     /// Largest displacement of a particle since the last neighbour search [units]

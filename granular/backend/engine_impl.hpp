@@ -201,7 +201,8 @@ public:
         if (watched) prepare_watch();
     }
 
-    void find_loads(const Domain& domain, float h, bool store, [[maybe_unused]] double path) override
+    void find_loads(const Domain& domain, const LoadTimes& times, bool store,
+                    [[maybe_unused]] double path) override
     {
         host_is_current = false;
         if constexpr (is_cpu) {
@@ -219,16 +220,16 @@ public:
         if constexpr (is_cpu) {
             // Those with triangles are the last ones of the list.
             const auto others = static_cast<std::uint32_t>(plan.list.size()) - triangle_pairs;
-            loops->find_listed_loads(on, particles, pairs, law_view(h), plan.list.data(), others);
-            loops->find_triangle_loads(triangle_contacts, particles, pairs, law_view(h),
+            loops->find_listed_loads(on, particles, pairs, law_view(times), plan.list.data(), others);
+            loops->find_triangle_loads(triangle_contacts, particles, pairs, law_view(times),
                                        own.pairs.start.data(), path);
-            pending = {particles, pairs, law_view(h)};
+            pending = {particles, pairs, law_view(times)};
         } else {
             if (triangle_pairs > 0)
                 par::for_each(
                     on, triangle_pairs,
                     HandOver{particles, pairs, surfaces(), with_triangle.data(), own.pairs.start.data()});
-            granular::find_loads(on, particles, pairs, law_view(h));
+            granular::find_loads(on, particles, pairs, law_view(times));
         }
     }
 
@@ -355,7 +356,7 @@ protected:
     {
         ParticleView particles = particle_view(domain, own.particle);
         particles.position = neighbours.position_copy();
-        return watch.contact_sums(on, particles, pair_view(), law_view(h), loops);
+        return watch.contact_sums(on, particles, pair_view(), law_view({h, 0}), loops);
     }
 
     KineticPart kinetic_part(double s) { return watch.kinetic_sums(on, own.particle, clump_view(), s); }
@@ -408,7 +409,10 @@ protected:
                 .stored = is_cpu ? plan.stored() : StoredLoads{}};
     }
 
-    LawView law_view(float h) const { return {laws.data(), static_cast<int>(laws.size()), surfaces(), h}; }
+    LawView law_view(const LoadTimes& times) const
+    {
+        return {laws.data(), static_cast<int>(laws.size()), surfaces(), times.h, times.lag};
+    }
 
     Surfaces surfaces() const
     {

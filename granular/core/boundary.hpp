@@ -249,6 +249,8 @@ inline std::array<Boundary, 5> open_box(const Vec3& low, const Vec3& high)
     return b;
 }
 
+HILDA_HD inline bool turns(const Boundary& b) { return b.omega.dot(b.omega) > 0; }
+
 /// Velocity of the point of the rigid boundary that is at `point` [m/s]
 HILDA_HD inline Vec3 velocity(const Boundary& b, const Vec3& point)
 {

@@ -85,7 +85,8 @@ struct LawView {
     const PairLaw* law;
     int laws;
     Surfaces surfaces;
-    float h;  ///< step size [s]
+    float h;    ///< step size [s]
+    float lag;  ///< time from the velocities to the positions [s]; see velocity_lag()
 };
 
 /// Computes the loads of all pairs at t_n and advances their histories from t_{n-1} to t_n. A pair that is no
@@ -103,13 +104,17 @@ void find_loads(Backend on, const ParticleView& particles, const PairView& pairs
 /// q, d2 = d², D and the separation r_i - r_j are in CellGrid::unit, `unit` in m. The caller computes q in
 /// 64-bit integers without rounding error. The difference D - d in single precision would lose most digits of
 /// a small overlap.
+///
+/// Returns 1/d [1/unit].
 template <class R>
-HILDA_HD inline void set_overlap(ContactPoint<R>& contact, const R& q, const R& d2, const R& D,
-                                 const Vec<R>& separation, const R& unit)
+HILDA_HD inline R set_overlap(ContactPoint<R>& contact, const R& q, const R& d2, const R& D,
+                              const Vec<R>& separation, const R& unit)
 {
     const R d = sqrt(d2);
     contact.delta = q / (D + d) * unit;
-    contact.n = (R(1.f) / d) * separation;
+    const R inverse = R(1.f) / d;
+    contact.n = inverse * separation;
+    return inverse;
 }
 
 /// Effective radius R* and effective mass m* from the radii of the contact and the inverse masses [1/kg]
@@ -120,24 +125,83 @@ HILDA_HD inline void set_masses(ContactPoint<R>& contact, R inverse_i, R inverse
     contact.m_eff = R(1.f) / (inverse_i + inverse_j);
 }
 
+/// Velocities of a contact: v of i relative to j [m/s], and the angular velocities [rad/s]
+template <class R>
+struct ContactVelocities {
+    Vec<R> v, omega_i, omega_j;
+
+    /// Turns them by a small angle [rad].
+    HILDA_HD void turn(const Vec<R>& angle)
+    {
+        v += angle.cross(v), omega_i += angle.cross(omega_i), omega_j += angle.cross(omega_j);
+    }
+};
+
 /// Rate of the overlap, tangential velocity and relative angular velocity; see ContactPoint. v = v_i - v_j is
 /// the relative velocity of the centres [m/s].
 template <class R>
-HILDA_HD inline void set_rates(ContactPoint<R>& contact, const Vec<R>& v, const Vec<R>& omega_i,
-                               const Vec<R>& omega_j)
+HILDA_HD inline void set_rates(ContactPoint<R>& contact, const ContactVelocities<R>& of, Lever lever)
 {
-    const R normal_velocity = v.dot(contact.n);
+    const R normal_velocity = of.v.dot(contact.n);
     contact.v_n = -normal_velocity;
+    contact.v_t = of.v - normal_velocity * contact.n -
+                  arm_rates(contact, of.omega_i, of.omega_j, lever).cross(contact.n);
+    contact.omega = of.omega_i - of.omega_j;
+}
+
+/// The same for two particles whose velocities precede the positions; lag: this time over the distance d of
+/// the centres [s/m], see velocity_lag(). The normal has turned by φ since then. The velocities turn with it:
+///
+///     φ = (lag/d) n × v,    v ← v + φ × v,    ω ← ω + φ × ω
+///
+/// Velocities of the middle of a step are relative to the normal of the middle. With the normal of t_n
+/// instead, a particle that spins about n and moves across it has a tangential velocity of h/2 times both,
+/// also when it rolls. The tangential spring adds it up in every step: a small particle between two large ones
+/// is pulled into the groove or pushed out of it. Velocities that are extrapolated to t_n avoid this too
+/// (Vyas, Ottino, Lueptow and Umbanhowar, Comput. Phys. Commun. 310 (2025) 109524). They need the
+/// accelerations of the step before, and they lower the largest stable step of a damped contact.
+template <class R>
+HILDA_HD inline void set_rates(ContactPoint<R>& contact, const ContactVelocities<R>& of, Lever lever,
+                               const R& lag, bool rotation_laws)
+{
+    const R normal_velocity = of.v.dot(contact.n);
+    const Vec<R> across = of.v - normal_velocity * contact.n;
+    const Vec<R> phi = lag * contact.n.cross(across),
+                 rates = arm_rates(contact, of.omega_i, of.omega_j, lever);
+    // φ is normal to n and v: (φ × v) · n = -lag |across|²,  (φ × rates) × n = -(rates · n) φ
+    contact.v_n = lag * across.dot(across) - normal_velocity;
     contact.v_t =
-        v - normal_velocity * contact.n - (contact.R_i * omega_i + contact.R_j * omega_j).cross(contact.n);
-    contact.omega = omega_i - omega_j;
+        across + (lag * normal_velocity) * across - rates.cross(contact.n) + rates.dot(contact.n) * phi;
+    contact.omega = of.omega_i - of.omega_j;
+    if (rotation_laws) contact.omega += phi.cross(contact.omega);
+}
+
+/// Velocities of the contact of a particle at r with surface k, relative to the normal near.n of the closest
+/// point. v, omega: of the particle, which precede its position by `lag` [s], as those of the boundary do
+///
+/// The particle was at r - lag (v - v_b) in the present frame of the boundary, v_b = v_B + ω_B × (r - r_B).
+HILDA_HD inline ContactVelocities<double> boundary_velocities(const Surfaces& surfaces, std::uint32_t k,
+                                                              const Vec3& r, const Nearest& near,
+                                                              const Vec3& v, const Vec3& omega, double radius,
+                                                              double lag)
+{
+    const Boundary& b = surfaces.boundary[surfaces.boundary_of(k)];
+    ContactVelocities<double> out{v - velocity(b, r - near.distance * near.n), omega, b.omega};
+    if (lag == 0 || surfaces.keeps_normal(k, near.n)) return out;
+    const Vec3 before = r - lag * (v - velocity(b, r));
+    const Nearest then = surfaces.nearest(k, before, 2 * radius);
+    if (!(then.distance < no_contact_distance)) return out;  // beyond the triangle
+    const Vec3 lever = before - then.distance * then.n - b.r, n = then.n - lag * b.omega.cross(then.n);
+    out.v = v - (b.v + b.omega.cross(lever - lag * b.omega.cross(lever)));
+    out.turn(n.cross(near.n));
+    return out;
 }
 
 /// Sets all of the contact of a particle with surface k but the step size. The geometry is computed in
 /// double precision. Returns false if there is no overlap.
 HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const CellGrid& grid,
                                            const Position& p, const Float4& v, const Float4& w,
-                                           const Surfaces& surfaces, std::uint32_t k,
+                                           const Surfaces& surfaces, std::uint32_t k, double lag = 0,
                                            Lever lever = Lever::radius)
 {
     const Boundary& b = surfaces.boundary[surfaces.boundary_of(k)];
@@ -153,9 +217,9 @@ HILDA_HD inline bool find_boundary_contact(ContactPoint<float>& contact, const C
     contact.R_i = v.w, contact.R_j = 0;
     contact.R_eff = static_cast<float>(effective_radius(b, v.w, near));
     contact.m_eff = 1 / (w.w + b.inverse_mass());
-    set_rates(contact, narrow(Vec3{v.x, v.y, v.z} - velocity(b, r - near.distance * near.n)),
-              Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
-    if (lever == Lever::contact) move_to_contact_point(contact, Vec<float>{w.x, w.y, w.z}, narrow(b.omega));
+    const ContactVelocities<double> of =
+        boundary_velocities(surfaces, k, r, near, {v.x, v.y, v.z}, {w.x, w.y, w.z}, v.w, lag);
+    set_rates(contact, ContactVelocities<float>{narrow(of.v), narrow(of.omega_i), narrow(of.omega_j)}, lever);
     return true;
 }
 

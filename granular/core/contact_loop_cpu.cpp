@@ -187,18 +187,21 @@ struct ContactLoop : detail::ContactPacks {
         const Points r = points(i);
         const auto v = detail::gather_rows<Pack>(particles.velocity, i),
                    w = detail::gather_rows<Pack>(particles.omega, i);
-        Vec<Pack> relative;
+        ContactVelocities<Pack> velocities{{}, {w.x, w.y, w.z}, splat(b.omega)};
         ContactPoint<Pack> contact;
         for (int k = 0; k < lanes; ++k) {
-            const Vec3 at{r.x[k], r.y[k], r.z[k]};
-            const double distance = (at - b.r).dot(b.axis);
-            const Vec3 u = Vec3{v.x.v[k], v.y.v[k], v.z.v[k]} - velocity(b, at - distance * b.axis);
-            contact.delta.v[k] = static_cast<float>(v.w.v[k] - distance);
-            relative.x.v[k] = static_cast<float>(u.x), relative.y.v[k] = static_cast<float>(u.y),
-            relative.z.v[k] = static_cast<float>(u.z);
+            const Vec3 at{r.x[k], r.y[k], r.z[k]}, of{v.x.v[k], v.y.v[k], v.z.v[k]};
+            const Nearest near = nearest(b, at);
+            contact.delta.v[k] = static_cast<float>(v.w.v[k] - near.distance);
+            if (laws.lag != 0 && turns(b))
+                set_lane(velocities, k,
+                         boundary_velocities(laws.surfaces, pairs.j[n[k]] & ~PairView::boundary_bit, at, near,
+                                             of, {w.x.v[k], w.y.v[k], w.z.v[k]}, v.w.v[k], laws.lag));
+            else
+                set_lane(velocities.v, k, of - velocity(b, at - near.distance * near.n));
         }
         contact.n = splat(b.axis);
-        evaluate_on_boundary(law, b, contact, v.w, w, relative, n, overlaps);
+        evaluate_on_boundary(law, b, contact, v.w, velocities, w, n, overlaps);
     }
 
     /// Contacts with surfaces of any shape: the geometry is computed per pair in double precision, the force
@@ -232,7 +235,7 @@ struct ContactLoop : detail::ContactPacks {
             ContactPoint<float> one{};
             if (!find_boundary_contact(one, particles.grid, particles.position[i], particles.velocity[i],
                                        particles.omega[i], laws.surfaces,
-                                       pairs.j[at] & ~PairView::boundary_bit, law.lever)) {
+                                       pairs.j[at] & ~PairView::boundary_bit, laws.lag, law.lever)) {
                 if (pairs.in_contact[at] != 0) clear_contact(at);
                 continue;
             }

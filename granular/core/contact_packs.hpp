@@ -120,12 +120,14 @@ struct ContactPacks {
         ContactPoint<Pack> contact;
         contact.h = laws.h;
         contact.R_i = v_i.w, contact.R_j = v_j.w;
-        set_overlap(contact, overlap.q, overlap.d2, overlap.D, overlap.separation, Pack(unit));
+        const Pack inverse =
+            set_overlap(contact, overlap.q, overlap.d2, overlap.D, overlap.separation, Pack(unit));
         set_masses(contact, w_i.w, w_j.w);
-        set_rates(contact, Vec<Pack>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
-                  Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
-        if (law.lever == Lever::contact)
-            move_to_contact_point(contact, Vec<Pack>{w_i.x, w_i.y, w_i.z}, Vec<Pack>{w_j.x, w_j.y, w_j.z});
+        set_rates(
+            contact,
+            ContactVelocities<Pack>{
+                {v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z}, {w_i.x, w_i.y, w_i.z}, {w_j.x, w_j.y, w_j.z}},
+            law.lever, laws.lag * units_per_metre * inverse, pairs.rotation_history != nullptr);
         overlaps = larger(overlaps, contact.delta / smaller(contact.R_i, contact.R_j));
         return contact;
     }
@@ -161,18 +163,26 @@ struct ContactPacks {
     {
         return {Pack(static_cast<float>(a.x)), Pack(static_cast<float>(a.y)), Pack(static_cast<float>(a.z))};
     }
+    static void set_lane(Vec<Pack>& to, int k, const Vec3& a)
+    {
+        to.x.v[k] = static_cast<float>(a.x), to.y.v[k] = static_cast<float>(a.y),
+        to.z.v[k] = static_cast<float>(a.z);
+    }
+    static void set_lane(ContactVelocities<Pack>& to, int k, const ContactVelocities<double>& from)
+    {
+        set_lane(to.v, k, from.v), set_lane(to.omega_i, k, from.omega_i),
+            set_lane(to.omega_j, k, from.omega_j);
+    }
     /// The loads of a pack of contacts n with a flat boundary. `contact` has the overlaps and normals;
-    /// `relative` are the velocities of the centres relative to the closest points [m/s].
+    /// `of` are the velocities at the closest points.
     void evaluate_on_boundary(const PairLaw& law, const Boundary& b, ContactPoint<Pack>& contact, Pack R,
-                              const Words4<Pack>& w, const Vec<Pack>& relative, const std::uint32_t* n,
-                              Pack& overlaps) const
+                              const ContactVelocities<Pack>& of, const Words4<Pack>& w,
+                              const std::uint32_t* n, Pack& overlaps) const
     {
         contact.h = laws.h;
         contact.R_i = contact.R_eff = R, contact.R_j = Pack(0.f);
         contact.m_eff = Pack(1.f) / (w.w + Pack(b.inverse_mass()));
-        const Vec<Pack> omega_i{w.x, w.y, w.z}, omega_j = splat(b.omega);
-        set_rates(contact, relative, omega_i, omega_j);
-        if (law.lever == Lever::contact) move_to_contact_point(contact, omega_i, omega_j);
+        set_rates(contact, of, law.lever);
         overlaps = larger(overlaps, contact.delta / contact.R_i);
         store_loads(evaluate_pack(law, contact, n), n);
     }

@@ -15,7 +15,7 @@ namespace hilda::granular {
 /// Vectors are in the global frame. The normal and the relative velocities are opposite to those of Eqs. 2.38
 /// and 2.40: the normal points from j to i, and velocities are of i relative to j. The lever arm of the
 /// tangential force is the radius, from which the overlap is not subtracted, unless the law has
-/// Lever::contact; see move_to_contact_point(). For a boundary as body j, R_j = 0 and R* is
+/// Lever::contact; see arm_rates(). For a boundary as body j, R_j = 0 and R* is
 /// effective_radius().
 template <class R>
 struct ContactPoint {
@@ -49,15 +49,18 @@ HILDA_HD inline R lever_reduction(const ContactPoint<R>& contact)
     return contact.delta / (contact.R_i + select(contact.R_j > R(0.f), contact.R_j, contact.R_i));
 }
 
-/// Changes the tangential velocity from that of the lever arms R_i and R_j to that of Lever::contact. The
-/// velocity of a boundary is that of its point at the depth δ/2 below the surface.
+/// Velocity of the surfaces that the rotations cause [m/s], without the cross product with n: l_i ω_i + l_j ω_j
+/// with the lever arms l. With Lever::contact the velocity of a boundary is that of its point at the depth δ/2
+/// below the surface.
 template <class R>
-HILDA_HD inline void move_to_contact_point(ContactPoint<R>& contact, const Vec<R>& omega_i,
-                                           const Vec<R>& omega_j)
+HILDA_HD inline Vec<R> arm_rates(const ContactPoint<R>& contact, const Vec<R>& omega_i, const Vec<R>& omega_j,
+                                 Lever lever)
 {
+    const Vec<R> of_radii = contact.R_i * omega_i + contact.R_j * omega_j;
+    if (lever == Lever::radius) return of_radii;
     const R q = lever_reduction(contact),
             depth_j = q * select(contact.R_j > R(0.f), contact.R_j, contact.R_i);
-    contact.v_t += (q * contact.R_i * omega_i + depth_j * omega_j).cross(contact.n);
+    return of_radii - (q * contact.R_i * omega_i + depth_j * omega_j);
 }
 
 /// Internal state of a contact, advanced once per step. All entries are zero when the contact begins.

@@ -26,6 +26,30 @@ enum class Scheme : std::int32_t {
 inline constexpr const char* scheme_names[] = {"symplectic-euler", "velocity-verlet", "forward-euler",
                                                "extended-taylor", "chung"};
 
+/// Time from the instant of the velocities to that of the positions when the loads are computed, over h. The
+/// velocity in the store is the displacement of one step over h: of the step before for symplectic Euler and
+/// velocity Verlet, of the next one for forward Euler. It is that of the middle of this step. With the other
+/// schemes it is that of the instant of the positions.
+HILDA_HD constexpr double velocity_lag(Scheme scheme)
+{
+    switch (scheme) {
+        case Scheme::symplectic_euler:
+        case Scheme::velocity_verlet:
+            return 0.5;
+        case Scheme::forward_euler:
+            return -0.5;
+        case Scheme::extended_taylor:
+        case Scheme::chung:
+            break;
+    }
+    return 0;
+}
+
+/// Step size, and time from the velocities to the positions [s]; see velocity_lag()
+struct LoadTimes {
+    float h, lag;
+};
+
 /// Parts of a step
 enum class Part : std::int32_t {
     whole,         ///< the whole step

@@ -45,7 +45,7 @@ struct FindLoad {
         if ((j & PairView::boundary_bit) != 0) {
             overlaps =
                 find_boundary_contact(contact, particles.grid, p_i, particles.velocity[i], particles.omega[i],
-                                      laws.surfaces, j & ~PairView::boundary_bit, law().lever);
+                                      laws.surfaces, j & ~PairView::boundary_bit, laws.lag, law().lever);
         } else {
             // Most listed pairs are not in contact: for these only positions and radii are read.
             const float common = particles.radius;
@@ -58,18 +58,19 @@ struct FindLoad {
             overlaps = q > 0;
             if (overlaps) {
                 const Float4 v_i = particles.velocity[i], v_j = particles.velocity[j];
-                set_overlap(
+                const float inverse = set_overlap(
                     contact, static_cast<float>(q), static_cast<float>(d2), static_cast<float>(D),
                     Vec<float>{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)},
                     unit);
                 const Float4 w_i = particles.omega[i], w_j = particles.omega[j];
                 contact.R_i = v_i.w, contact.R_j = v_j.w;
                 set_masses(contact, w_i.w, w_j.w);
-                set_rates(contact, Vec<float>{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
-                          Vec<float>{w_i.x, w_i.y, w_i.z}, Vec<float>{w_j.x, w_j.y, w_j.z});
-                if (law().lever == Lever::contact)
-                    move_to_contact_point(contact, Vec<float>{w_i.x, w_i.y, w_i.z},
-                                          Vec<float>{w_j.x, w_j.y, w_j.z});
+                set_rates(contact,
+                          ContactVelocities<float>{{v_i.x - v_j.x, v_i.y - v_j.y, v_i.z - v_j.z},
+                                                   {w_i.x, w_i.y, w_i.z},
+                                                   {w_j.x, w_j.y, w_j.z}},
+                          law().lever, laws.lag * units_per_metre * inverse,
+                          pairs.rotation_history != nullptr);
             }
         }
         const bool rotation_laws = pairs.rotation_history != nullptr;

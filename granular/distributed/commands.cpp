@@ -81,7 +81,7 @@ void make_call(RankEngine& e, const Command& c, Lists lists)
         case Call::restore_list:
             return e.restore_list(c.domain);
         case Call::find_loads:
-            return e.find_loads(c.domain, c.h, c.flag != 0, c.path);
+            return e.find_loads(c.domain, c.times, c.flag != 0, c.path);
         case Call::advance:
             e.advance(c.step);
             return;
@@ -401,11 +401,11 @@ void FirstEngine::prepare(const Domain& domain)
     if (has_list) both({.call = Call::restore_list, .domain = domain}, {}, [&] { own.restore_list(domain); });
 }
 
-void FirstEngine::find_loads(const Domain& domain, float h, bool store, double path)
+void FirstEngine::find_loads(const Domain& domain, const LoadTimes& times, bool store, double path)
 {
     release_whole();
-    both({.call = Call::find_loads, .domain = domain, .h = h, .flag = store ? 1 : 0, .path = path}, {},
-         [&] { own.find_loads(domain, h, store, path); });
+    both({.call = Call::find_loads, .domain = domain, .times = times, .flag = store ? 1 : 0, .path = path},
+         {}, [&] { own.find_loads(domain, times, store, path); });
 }
 
 float FirstEngine::advance(const StepParameters& step)

@@ -51,6 +51,7 @@ struct Command {
     std::int32_t engine = 0;
     Domain domain = {};
     StepParameters step = {};
+    LoadTimes times = {};
     float h = 0;
     std::int32_t flag = 0;
     double path = 0, s = 0;
@@ -93,7 +94,7 @@ public:
     void find_neighbours(const Domain& domain) override;
     std::vector<LeavingParticle> outside(const Domain& domain) override;
     void remove(const std::vector<std::uint32_t>& ids) override;
-    void find_loads(const Domain& domain, float h, bool store, double path) override;
+    void find_loads(const Domain& domain, const LoadTimes& times, bool store, double path) override;
     float advance(const StepParameters& step) override;
     float largest_displacement() override;
     const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) override;

@@ -458,10 +458,10 @@ void RankEngine::send_ghosts()
     }
 }
 
-void RankEngine::find_loads(const Domain& domain, float h, bool store, double path)
+void RankEngine::find_loads(const Domain& domain, const LoadTimes& times, bool store, double path)
 {
     Busy measures(present.time);
-    EngineOn::find_loads(domain, h, store, path);
+    EngineOn::find_loads(domain, times, store, path);
 }
 
 float RankEngine::advance(const StepParameters& step)

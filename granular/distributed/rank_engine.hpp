@@ -50,7 +50,7 @@ public:
     /// Builds the list for the positions of the last search.
     void restore_list(const Domain& domain);
 
-    void find_loads(const Domain& domain, float h, bool store, double path) override;
+    void find_loads(const Domain& domain, const LoadTimes& times, bool store, double path) override;
     float advance(const StepParameters& step) override;
     float largest_displacement() override;
     const std::vector<Wrench>& free_boundary_wrenches(const Domain& domain) override;

@@ -3,17 +3,16 @@
 
 namespace hilda::granular {
 
-void DoubleWorld::find_loads()
+void DoubleWorld::find_loads(double lag)
 {
     const int n = static_cast<int>(particle.size());
     F.assign(n, {0, 0, 0}), T.assign(n, {0, 0, 0});
     const auto inverse = [](const Particle& p) { return p.fixed ? 0 : 1 / p.mass; };
-    const auto add_contact = [&](int i, int j, ContactPoint<double>& t, const Vec3& omega_j) {
+    const auto add_contact = [&](int i, int j, ContactPoint<double>& t) {
         if (!(t.delta > 0)) {
             history.erase({i, j});
             return;
         }
-        if (law.lever == Lever::contact) move_to_contact_point(t, particle[i].omega, omega_j);
         t.h = options.h;
         History<double>& state =
             history.try_emplace({i, j}, History<double>{{0, 0, 0}, 0, {0, 0, 0}, 0, false}).first->second;
@@ -33,18 +32,20 @@ void DoubleWorld::find_loads()
             t.R_i = p.radius, t.R_j = q.radius, t.n = (1 / distance) * d;
             set_masses(t, inverse(p), inverse(q));
             t.delta = p.radius + q.radius - distance;
-            set_rates(t, p.v - q.v, p.omega, q.omega);
-            add_contact(i, j, t, q.omega);
+            set_rates(t, {p.v - q.v, p.omega, q.omega}, law.lever, lag / distance, law.resists_rotation());
+            add_contact(i, j, t);
         }
         for (int b = 0; b < static_cast<int>(boundary.size()); ++b) {
             const Nearest near = nearest(boundary[b], p.r);
             t.R_i = p.radius, t.R_j = 0, t.n = near.n;
             t.R_eff = effective_radius(boundary[b], p.radius, near);
             t.m_eff = 1 / (inverse(p) + boundary[b].inverse_mass());
-            set_rates(t, p.v - velocity(boundary[b], p.r - near.distance * near.n), p.omega,
-                      boundary[b].omega);
             t.delta = p.radius - near.distance;
-            if (!p.fixed) add_contact(i, -1 - b, t, boundary[b].omega);
+            set_rates(t,
+                      boundary_velocities({.boundary = boundary.data()}, static_cast<std::uint32_t>(b), p.r,
+                                          near, p.v, p.omega, p.radius, lag),
+                      law.lever);
+            if (!p.fixed) add_contact(i, -1 - b, t);
         }
     }
 }
@@ -55,6 +56,7 @@ void DoubleWorld::step(long count)
     const Scheme scheme = options.scheme;
     if (a.size() != n) a.assign(n, {0, 0, 0}), alpha.assign(n, {0, 0, 0});
     const bool verlet = scheme == Scheme::velocity_verlet;
+    const double lag = velocity_lag(scheme) * options.h;
     const auto advance_all = [&](Part part) {
         for (std::size_t k = 0; k < n; ++k) {
             Particle& p = particle[k];
@@ -79,12 +81,12 @@ void DoubleWorld::step(long count)
         for (Boundary& b : boundary) b.r += options.h * b.v;
     };
     for (; count > 0; --count, ++step_count) {
-        if (step_count == 0 || !verlet) find_loads();
+        if (step_count == 0 || !verlet) find_loads(verlet ? 0 : lag);
         if (step_count == 0) advance_all(Part::only_loads);
         if (verlet) {
             advance_all(Part::before_loads);
             move_boundaries();
-            find_loads();
+            find_loads(lag);
             advance_all(Part::after_loads);
         } else {
             advance_all(Part::whole);

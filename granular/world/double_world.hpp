@@ -23,7 +23,7 @@ public:
     bool turns = true;  ///< false: torques do not accelerate the rotation of particles
 
 private:
-    void find_loads();
+    void find_loads(double lag);
 
     WorldOptions options;
     PairLaw law;

@@ -352,20 +352,20 @@ void World::step(long n)
 
 void World::one_step()
 {
-    const auto h = static_cast<float>(options.h);
     const bool verlet = options.scheme == Scheme::velocity_verlet;
     Lap lap;
     const auto take = [&](double& to) {
         if (timed) engine->wait();
         to += lap.take();
     };
-    const auto find_loads = [&](bool store) {
+    const auto find_loads = [&](bool store, double lag) {
         take(times.advance);
         update_neighbours();
         if (verlet) send_boundaries();  // they have moved in this step
         take(times.neighbours);
         in_step = true;
-        engine->find_loads(domain, h, store, path);
+        engine->find_loads(domain, {static_cast<float>(options.h), static_cast<float>(lag * options.h)},
+                           store, path);
         take(times.loads);
     };
     if (forces_changed) engine->set_forces(forces);
@@ -403,7 +403,7 @@ void World::one_step()
     engine->prepare(domain);
     if (!is_posed()) move_attached();
     if (step_count == 0 && uses_previous_acceleration(options.scheme)) {
-        find_loads(true);
+        find_loads(true, 0);
         engine->advance(step_parameters(Part::only_loads));
         if (verlet) find_tool_loads();
     }
@@ -412,14 +412,15 @@ void World::one_step()
         particle_displacement += advance(Part::before_loads);
         move();
         if (!is_posed()) move_attached();
-        find_loads(false);
+        find_loads(false, velocity_lag(options.scheme));
         find_tool_loads();
         accelerate_tools(0.5);
         watch_loads();
         advance(Part::after_loads);
         watch_advance();
     } else {
-        if (step_count > 0 || !uses_previous_acceleration(options.scheme)) find_loads(false);
+        if (step_count > 0 || !uses_previous_acceleration(options.scheme))
+            find_loads(false, velocity_lag(options.scheme));
         find_tool_loads();
         accelerate_tools(1);
         watch_loads();

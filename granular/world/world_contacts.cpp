@@ -102,9 +102,10 @@ void World::for_current_loads(const Arrays<par::Cpu>& of, const F& f) const
     const bool rotation_laws = pairs.rotation_history.size() > 0, internal = pairs.internal.size() > 0;
     // With velocity Verlet the histories belong to t already. With the other schemes they belong to the
     // previous step.
-    const float h =
-        options.scheme == Scheme::velocity_verlet && step_count > 0 ? 0 : static_cast<float>(options.h);
-    const LawView law_view{laws.data(), static_cast<int>(laws.size()), surfaces(), h};
+    const bool is_advanced = options.scheme == Scheme::velocity_verlet && step_count > 0;
+    const double h = is_advanced ? 0 : options.h, lag = velocity_lag(options.scheme) * h;
+    const LawView law_view{laws.data(), static_cast<int>(laws.size()), surfaces(), static_cast<float>(h),
+                           static_cast<float>(lag)};
     const ParticleView particles = particle_view(domain, of.particle);
     constexpr std::uint32_t most = CurrentLoads::most;
     const HandedOver from(pairs, particles, law_view.surfaces, rotation_laws, internal);

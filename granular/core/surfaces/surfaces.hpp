@@ -33,6 +33,16 @@ struct Surfaces {
         near.n = rotated(b.p, near.n);
         return near;
     }
+    /// Whether n remains the normal of the contact with surface k: a plane or the face of a triangle, of a
+    /// boundary that does not turn
+    HILDA_HD bool keeps_normal(std::uint32_t k, const Vec3& n) const
+    {
+        const Boundary& b = boundary[boundary_of(k)];
+        if (turns(b)) return false;
+        if (!is_triangle(k)) return b.shape == Boundary::Shape::plane;
+        const double cosine = n.dot(rotated(b.p, mesh.triangle[k - first_triangle].face.n));
+        return cosine > 1 - 1e-12 || cosine < 1e-12 - 1;
+    }
     /// The point of the triangle with the number k that is closest to `point`
     HILDA_HD Vec3 closest_point(std::uint32_t k, const Vec3& point) const
     {

@@ -245,20 +245,20 @@ struct TriangleLoop : detail::ContactPacks {
         for (unsigned k = 0; k < lanes; ++k) m[k] = at(k), n[k] = from.pair[m[k]], i[k] = from.particle[m[k]];
         const auto v = detail::gather_rows<Pack>(particles.velocity, i),
                    w = detail::gather_rows<Pack>(particles.omega, i);
-        Vec<Pack> relative;
+        ContactVelocities<Pack> velocities;
         ContactPoint<Pack> contact;
         for (unsigned k = 0; k < lanes; ++k) {
-            const Vec3 r{from.x[m[k]], from.y[m[k]], from.z[m[k]]},
-                normal{from.n_x[m[k]], from.n_y[m[k]], from.n_z[m[k]]};
-            const double distance = from.distance[m[k]];
-            const Vec3 u = Vec3{v.x.v[k], v.y.v[k], v.z.v[k]} - velocity(b, r - distance * normal);
-            contact.delta.v[k] = static_cast<float>(v.w.v[k] - distance);
-            contact.n.x.v[k] = static_cast<float>(normal.x), contact.n.y.v[k] = static_cast<float>(normal.y),
-            contact.n.z.v[k] = static_cast<float>(normal.z);
-            relative.x.v[k] = static_cast<float>(u.x), relative.y.v[k] = static_cast<float>(u.y),
-            relative.z.v[k] = static_cast<float>(u.z);
+            const Vec3 r{from.x[m[k]], from.y[m[k]], from.z[m[k]]};
+            const Nearest near{from.distance[m[k]], {from.n_x[m[k]], from.n_y[m[k]], from.n_z[m[k]]}};
+            contact.delta.v[k] = static_cast<float>(v.w.v[k] - near.distance);
+            const auto lane = static_cast<int>(k);
+            set_lane(contact.n, lane, near.n);
+            set_lane(velocities, lane,
+                     boundary_velocities(laws.surfaces, pairs.j[n[k]] & ~PairView::boundary_bit, r, near,
+                                         {v.x.v[k], v.y.v[k], v.z.v[k]}, {w.x.v[k], w.y.v[k], w.z.v[k]},
+                                         v.w.v[k], laws.lag));
         }
-        evaluate_on_boundary(law, b, contact, v.w, w, relative, n, overlaps);
+        evaluate_on_boundary(law, b, contact, v.w, velocities, w, n, overlaps);
     }
 };
 

@@ -69,9 +69,10 @@ TEST_CASE("with the lever arms to the contact point a common rotation of a pair 
         ContactPoint<double> contact{};
         contact.n = (1 / apart) * (r_i - r_j), contact.delta = 0.05 * apart;
         contact.R_i = 0.4 * apart, contact.R_j = 0.65 * apart;  // R_i + R_j - delta = the distance
-        set_rates(contact, omega.cross(r_i) - omega.cross(r_j), omega, omega);
+        const ContactVelocities<double> of{omega.cross(r_i) - omega.cross(r_j), omega, omega};
+        set_rates(contact, of, Lever::radius);
         CHECK(contact.v_t.norm() == Approx(0.05 * apart * omega.cross(contact.n).norm()).epsilon(1e-9));
-        move_to_contact_point(contact, omega, omega);
+        set_rates(contact, of, Lever::contact);
         CHECK(contact.v_t.norm() < 1e-14);
     }
 }

@@ -37,15 +37,18 @@ void note_coefficients(ObjectReader& pair)
     pair.note("restitution", "fraction",
               {"Coefficient of restitution e [-]. Required with the normal law hertz, and if the tangential "
                "law has a spring whose stiffness is that of the materials, with hunt-crossley and "
-               "kuwabara-kono. 0 is treated as 1e-7, with a notice.",
+               "kuwabara-kono. With hooke it may replace gamma_n, with walton-braun k_2. It is refused where "
+               "no law uses it. 0 is treated as 1e-7, with a notice.",
                "0.7"});
     pair.note("mu", "not_negative",
               {"Kinetic coefficient of friction [-]. Required if the tangential law is not none or the spin "
-               "law is torsional-spring.",
+               "law is torsional-spring, and refused otherwise.",
                "0.3"});
-    pair.note(
-        "mu_s", "not_negative",
-        {"Static coefficient of friction [-]. It must not be less than mu. By default equal to mu.", "0.4"});
+    pair.note("mu_s", "not_negative",
+              {"Static coefficient of friction [-] of the tangential laws mindlin and mindlin-incremental. "
+               "It must not be "
+               "less than mu. By default equal to mu.",
+               "0.4"});
 }
 
 /// Notes the key of the law of this kind.
@@ -61,6 +64,20 @@ void note_kind(ObjectReader& pair, const std::string& kind, const std::string& s
     const std::string schema =
         R"("$ref": "#/$defs/)" + kind + R"(_law", "default": {"law": )" + io::in_quotes(standard) + '}';
     pair.note(kind, schema, {title_of_kind(kind) + '.', examples.at(kind)});
+}
+
+/// Throws io::PlacedError for a coefficient that none of the laws reads.
+[[noreturn]] void refuse_without_effect(ObjectReader& pair, const std::string& key, const PairLaw& law)
+{
+    pair.finish();  // a misspelt key may be the cause
+    const auto name_of = [](const auto& laws) {
+        std::string name;
+        laws.visit([&](const auto& l) { name = l.name; });
+        return name;
+    };
+    pair.fail(key, key + " has no effect with the normal law " + name_of(law.normal) +
+                       " and the tangential law " + name_of(law.tangential) + ", got " +
+                       io::described(*pair.peek(key)) + "; remove it or choose a law that uses it");
 }
 
 }  // namespace
@@ -114,6 +131,7 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
         notices.push_back(pair.place("restitution") +
                           ": 0 is replaced by 1e-7, because the damping of 0 is infinite");
     for (const char* key : {"restitution", "mu", "mu_s"}) pair.find(key);  // known even if no law reads them
+    std::set<std::string> used;
     PairLaw law;
     const std::string lever =
         pair.one_of("lever", {"radius", "contact"},
@@ -133,6 +151,7 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
         LawKeys keys(own, pair, i, j, law);
         (law.*member).read(own.one_of("law", names, {}, standard), keys);
         own.finish();
+        used.merge(keys.used);
     });
     check_stiffness(pair, i, j, law);
     const bool spring = !law.tangential.is<NoFriction>();
@@ -143,11 +162,14 @@ PairLaw read_pair(ObjectReader& pair, const Material& i, const Material& j, std:
             "tangential",
             "the tangential law must not be none with this rolling or spin law, whose stiffness is that of "
             "the tangential law");
-    // Checked even if no law reads them.
+    if (lever == "contact" && !spring)
+        pair.fail("lever", "lever has no effect without a tangential law, got \"contact\"");
     const double mu = pair.not_negative("mu", {}, 0), mu_s = pair.not_negative("mu_s", {}, mu);
     if (mu_s < mu)
         pair.fail("mu_s",
                   "mu_s must not be less than mu, " + io::shortest(mu) + ", got " + io::shortest(mu_s));
+    for (const char* key : {"restitution", "mu", "mu_s"})
+        if (pair.has(key) && !used.contains(key)) refuse_without_effect(pair, key, law);
     return law;
 }
 

@@ -7,6 +7,9 @@
 #include "granular/reading/object_reader.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
 
 namespace hilda::granular {
 
@@ -26,6 +29,11 @@ public:
     {
         return static_cast<float>(own.not_negative(key, {text, io::shortest(example)}, default_value));
     }
+    /// A required coefficient; 0 switches the law off
+    float coefficient(const char* key, const char* text, double example)
+    {
+        return static_cast<float>(own.not_negative(key, {text, io::shortest(example)}));
+    }
     /// 0 if the key is absent. `other` is the name of the key with the value `least`.
     float at_least(const char* key, float least, const char* other, const char* text, double example)
     {
@@ -35,17 +43,38 @@ public:
                               io::shortest(static_cast<double>(least)) + ", got " + io::shortest(x));
         return static_cast<float>(x);
     }
+    /// Throws io::PlacedError with the place of the key, or of the law if the key is missing.
+    void refuse(const char* key, const std::string& what)
+    {
+        if (!own.records_schema()) own.fail(key, what);
+    }
     int flag(const char* key, const char* text) { return own.flag(key, {text, "true"}, false) ? 1 : 0; }
     double restitution()
     {
         constexpr double least = 1e-7;  // the damping contains ln e, which must be finite
+        used.insert("restitution");
         return std::max(pair.fraction("restitution"), least);
+    }
+    /// The restitution if it is given. `other`: the key of the law that it replaces
+    std::optional<double> restitution_instead_of(const char* other)
+    {
+        if (pair.records_schema() || !pair.has("restitution")) return {};
+        if (own.has(other))
+            own.fail(other, std::string(other) +
+                                " and restitution exclude each other: restitution determines " + other +
+                                ", got both");
+        return restitution();
     }
     float static_friction()
     {
+        used.insert("mu_s");
         return pair.has("mu_s") ? static_cast<float>(pair.not_negative("mu_s")) : kinetic_friction();
     }
-    float kinetic_friction() { return static_cast<float>(pair.not_negative("mu")); }
+    float kinetic_friction()
+    {
+        used.insert("mu");
+        return static_cast<float>(pair.not_negative("mu"));
+    }
     /// Whether the normal law computes its stiffness from the moduli of the materials; the tangential law
     /// then does so too
     bool material_normal() const
@@ -56,6 +85,7 @@ public:
     }
 
     const Material &i, &j;
+    std::set<std::string> used = {};  ///< keys of the entry of `laws` that the law has read
 
 private:
     ObjectReader &own, &pair;

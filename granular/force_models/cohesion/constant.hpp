@@ -33,7 +33,7 @@ struct ConstantCohesion {
     template <class Keys>
     static ConstantCohesion read(Keys& keys)
     {
-        return {.F_c = keys.not_negative("F_c", 0, "Force F_c [N].", 1e-6)};
+        return {.F_c = keys.coefficient("F_c", "Force F_c [N].", 1e-6)};
     }
 };
 

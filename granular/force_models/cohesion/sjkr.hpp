@@ -9,12 +9,13 @@ namespace hilda::granular {
 
 ///     F_c = k A,   A = π a² = π R* δ
 ///
-/// k: cohesion energy density [J/m³]. A is the contact area of Hertz's theory. The intersection circle of two
-/// overlapping spheres, which some programs use, has twice this area.
+/// k: cohesion energy density [J/m³]. A is the contact area of Hertz's theory. See SjkrIntersection and Sjkr2 for
+/// the areas of LIGGGHTS, which are twice and four times as large.
 struct Sjkr {
     static constexpr const char* name = "sjkr";
     static constexpr const char* description =
-        "Simplified Johnson-Kendall-Roberts law: F_c = k A with the contact area A = pi R* delta.";
+        "Simplified Johnson-Kendall-Roberts law: F_c = k A with the contact area A = pi R* delta of Hertz's "
+        "theory. It is half of the law sjkr of LIGGGHTS, which is sjkr-intersection here.";
     static constexpr const char* example = R"("k": 1000)";
 
     float k = 0;  ///< [J/m³]
@@ -33,7 +34,7 @@ struct Sjkr {
     template <class Keys>
     static Sjkr read(Keys& keys)
     {
-        return {.k = keys.not_negative("k", 0, "Cohesion energy density k [J/m^3].", 1000)};
+        return {.k = keys.coefficient("k", "Cohesion energy density k [J/m^3].", 1000)};
     }
 };
 

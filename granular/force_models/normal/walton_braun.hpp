@@ -80,6 +80,8 @@ struct WaltonBraun {
         if (law.k_2 == 0) {
             const double e = keys.restitution();
             law.k_2 = float(law.k_1 / (e * e));
+        } else {
+            keys.restitution_instead_of("k_2");  // refused
         }
         return law;
     }

@@ -51,7 +51,7 @@ struct ConstantTorque {
     template <class Keys>
     static ConstantTorque read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+        return {.mu_r = keys.coefficient("mu_r", "Coefficient of rolling friction mu_r [-].", 0.05),
                 .slow = keys.not_negative(
                     "slow", 1e-4,
                     "Relative angular velocity below which the torque is proportional to it [rad/s].", 0.001),

@@ -48,7 +48,7 @@ struct Epsd {
     template <class Keys>
     static Epsd read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+        return {.mu_r = keys.coefficient("mu_r", "Coefficient of rolling friction mu_r [-].", 0.05),
                 .eta_r = keys.not_negative(
                     "eta_r", 0, "Damping of the rolling spring as a fraction of critical damping [-].", 0.3)};
     }

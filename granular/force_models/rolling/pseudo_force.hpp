@@ -48,7 +48,7 @@ struct PseudoForce {
     template <class Keys>
     static PseudoForce read(Keys& keys)
     {
-        return {.mu_r = keys.not_negative("mu_r", 0, "Coefficient of rolling friction mu_r [-].", 0.05),
+        return {.mu_r = keys.coefficient("mu_r", "Coefficient of rolling friction mu_r [-].", 0.05),
                 .k_r = keys.not_negative(
                     "k_r", 1, "Rolling stiffness as a multiple of the tangential stiffness [-].", 2),
                 .eta_r = keys.not_negative(

@@ -31,7 +31,12 @@ struct Coulomb {
     template <class Keys>
     static Coulomb read(Keys& keys)
     {
-        return {.spring = TangentialSpring::read(keys), .mu_k = keys.kinetic_friction()};
+        Coulomb law{.spring = TangentialSpring::read(keys), .mu_k = keys.kinetic_friction()};
+        if (!keys.material_normal() && !(law.spring.gamma_t > 0))
+            keys.refuse("gamma_t",
+                        "gamma_t must be positive with the tangential law coulomb, which has no force "
+                        "without it, got 0");
+        return law;
     }
 };
 

@@ -156,9 +156,9 @@ HILDA_HD inline void set_rates(ContactPoint<R>& contact, const ContactVelocities
 ///
 /// Velocities of the middle of a step are relative to the normal of the middle. With the normal of t_n
 /// instead, a particle that spins about n and moves across it has a tangential velocity of h/2 times both,
-/// also when it rolls. The tangential spring adds it up in every step: a small particle between two large ones
-/// is pulled into the groove or pushed out of it. Velocities that are extrapolated to t_n avoid this too
-/// (Vyas, Ottino, Lueptow and Umbanhowar, Comput. Phys. Commun. 310 (2025) 109524). They need the
+/// also when it rolls. The tangential spring adds it up in every step: a small particle between two large
+/// ones is pulled into the groove or pushed out of it. Velocities that are extrapolated to t_n avoid this
+/// too (Vyas, Ottino, Lueptow and Umbanhowar, Comput. Phys. Commun. 310 (2025) 109524). They need the
 /// accelerations of the step before, and they lower the largest stable step of a damped contact.
 template <class R>
 HILDA_HD inline void set_rates(ContactPoint<R>& contact, const ContactVelocities<R>& of, Lever lever,

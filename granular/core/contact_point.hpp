@@ -49,9 +49,9 @@ HILDA_HD inline R lever_reduction(const ContactPoint<R>& contact)
     return contact.delta / (contact.R_i + select(contact.R_j > R(0.f), contact.R_j, contact.R_i));
 }
 
-/// Velocity of the surfaces that the rotations cause [m/s], without the cross product with n: l_i ω_i + l_j ω_j
-/// with the lever arms l. With Lever::contact the velocity of a boundary is that of its point at the depth δ/2
-/// below the surface.
+/// Velocity of the surfaces that the rotations cause [m/s], without the cross product with n: l_i ω_i + l_j
+/// ω_j with the lever arms l. With Lever::contact the velocity of a boundary is that of its point at the
+/// depth δ/2 below the surface.
 template <class R>
 HILDA_HD inline Vec<R> arm_rates(const ContactPoint<R>& contact, const Vec<R>& omega_i, const Vec<R>& omega_j,
                                  Lever lever)

@@ -9,8 +9,8 @@ namespace hilda::granular {
 
 ///     F_c = k A,   A = π a² = π R* δ
 ///
-/// k: cohesion energy density [J/m³]. A is the contact area of Hertz's theory. See SjkrIntersection and Sjkr2 for
-/// the areas of LIGGGHTS, which are twice and four times as large.
+/// k: cohesion energy density [J/m³]. A is the contact area of Hertz's theory. See SjkrIntersection and
+/// Sjkr2 for the areas of LIGGGHTS, which are twice and four times as large.
 struct Sjkr {
     static constexpr const char* name = "sjkr";
     static constexpr const char* description =

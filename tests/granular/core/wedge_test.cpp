@@ -78,8 +78,8 @@ struct Wedge {
     double friction(double phi) const { return m * g * std::sin(phi) / (5 * n_r * n_r * effective); }
 
     /// The overlap at this radial load while nothing slips. Normal and tangential springs of the plane x-rho
-    /// share the load: the particle has moved by s along rho since the start. `carried`: tangential displacement
-    /// in this plane that the motion along the groove has caused
+    /// share the load: the particle has moved by s along rho since the start. `carried`: tangential
+    /// displacement in this plane that the motion along the groove has caused
     double overlap(double load, double carried) const
     {
         double low = -delta_0 / n_r * 0.999, high = delta_0 / n_r;
@@ -152,7 +152,8 @@ TEST_CASE("the normal force of a particle that rolls between two others is that 
 
 TEST_CASE("a particle leaves the groove between two others when no force can hold it", "[granular][wedge]")
 {
-    // Little friction does not hold the particle in a narrow groove; with more it must have slipped at the start.
+    // Little friction does not hold the particle in a narrow groove; with more it must have slipped at the
+    // start.
     struct Start {
         double ratio, mu;
         bool drops;
@@ -175,7 +176,8 @@ TEST_CASE("a particle leaves the groove between two others when no force can hol
     }
     CAPTURE(ratio, hertz, start.mu);
     REQUIRE(left > 0);
-    // Unless friction holds it longer, between rolling and sliding: g cos(phi) = v²/rho with v² = 2 g rho (cos(phi_0) - cos(phi))/effective
+    // Unless friction holds it longer, between rolling and sliding: g cos(phi) = v²/rho with v² = 2 g rho
+    // (cos(phi_0) - cos(phi))/effective
     const auto leaves_at = [&](double inertia) { return std::acos(2 * std::cos(w.phi_0) / (2 + inertia)); };
     CHECK(angle > 0.98 * leaves_at(1));
     if (!start.drops) CHECK(angle < 1.1 * leaves_at(w.effective));

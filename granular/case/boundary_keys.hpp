@@ -21,6 +21,7 @@ struct NamedBoundary {
     BoundaryMotion motion = {};             ///< prescribed motion and load; the boundary number is not set
     std::string part_of = {};               ///< name of the body of which it is a part
     std::optional<SolidBody> solid = {};    ///< of a part with a density
+    std::string notice = {};                ///< about repairs of the mesh
     bool sums_parts = false;                ///< whether the mass properties are the sums over the parts
 
     /// Whether the boundary moves under its loads or by a prescribed velocity

@@ -91,6 +91,7 @@ void BoundaryList::add(NamedBoundary& n, ObjectReader& o, EntryKeys& keys)
     n.motion.boundary = o.located([&] {
         return n.mesh ? out.world->add(n.boundary, *n.mesh, n.two_sided) : out.world->add(n.boundary);
     });
+    if (!n.notice.empty()) out.notices.push_back(o.place("file") + ": " + n.notice);
     surfaces.add(o.place(), n, *out.world, out.notices);
     n.mesh.reset();  // the world has its triangles
     if (n.motion.is_prescribed()) motions.emplace_back(n.motion, o);

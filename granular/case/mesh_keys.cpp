@@ -2,6 +2,7 @@
 // The boundary type `mesh`: triangles of a file, or of a shape that the case describes.
 #include "granular/case/boundary_keys.hpp"
 #include "granular/mesh/mesh_file.hpp"
+#include "granular/mesh/mesh_repair.hpp"
 #include "granular/mesh/mesh_shapes.hpp"
 
 #include <limits>
@@ -116,7 +117,20 @@ constexpr std::array<Source, 5> shapes = {
       {"A sphere about the origin of the mesh; the particles are outside.",
        R"({"radius": 0.01, "divisions": 2})"}}}};
 
-TriangleMesh read_triangles(ObjectReader& o)
+std::string text_of(const Welded& welded)
+{
+    std::string text;
+    if (welded.vertices > 0)
+        text = std::to_string(welded.vertices) + " vertices are joined with others at distances of up to " +
+               io::shortest(welded.distance) + " m, within 1e-9 of the size of the mesh";
+    if (welded.triangles > 0)
+        text += (text.empty() ? "" : "; ") + std::to_string(welded.triangles) +
+                " triangles without an area or equal to another one are removed";
+    return text;
+}
+
+/// `notice`: about repairs
+TriangleMesh read_triangles(ObjectReader& o, std::string& notice)
 {
     std::string given;
     const auto check = [&](const char* key) {
@@ -136,7 +150,7 @@ TriangleMesh read_triangles(ObjectReader& o)
     }
     if (given != "file" && !o.records_schema()) return mesh;
     const std::string file =
-        o.file("file", {"OBJ or STL file. A relative path refers to the working directory of the program. "
+        o.file("file", {"OBJ or STL file. A relative path refers to the folder of the case. "
                         "The file must be below the folder of the case, unless --allow-paths is given.",
                         R"("plough.stl")"});
     const double scale = o.positive(
@@ -145,6 +159,7 @@ TriangleMesh read_triangles(ObjectReader& o)
     try {
         mesh = read_mesh(file);
         for (Vec3& v : mesh.vertex) v = scale * v;
+        notice = text_of(weld(mesh));
         return mesh;
     } catch (const io::IoError& e) {
         o.fail("file", e.what());
@@ -176,9 +191,14 @@ void set_mesh_centre(NamedBoundary& b, const Vec3& centre)
 std::vector<NamedBoundary> read_mesh(ObjectReader& o, NamedBoundary b)
 {
     b.boundary.shape = Boundary::Shape::mesh;
-    b.mesh = read_triangles(o);
-    b.two_sided = o.flag(
-        "two_sided", {"If true, particles are in contact with both sides of the triangles.", "true"}, false);
+    b.mesh = read_triangles(o, b.notice);
+    b.two_sided =
+        o.flag("two_sided",
+               {"If true, particles are in contact with both sides of the triangles, and their orientation "
+                "has no meaning.",
+                "true"},
+               false);
+    if (b.two_sided) orient(*b.mesh);
     const Vec3 rotation =
         o.vec3("rotation",
                {"Rotation of the mesh about r at the start, a rotation vector in the global frame [rad].",

@@ -102,6 +102,26 @@ void Insertion::begin_flow(const InsertionFlow& of, double t)
     flow = next;
 }
 
+double Insertion::due_mass(double t) const
+{
+    if (!flow.active) return state.mass;
+    const double due = spec.due(flow, t), mean = spec.mean_mass(),
+                 most = static_cast<double>(spec.count) * mean;
+    return std::min(flow.mass_rate > 0 ? due : due * mean, most);
+}
+
+std::string Insertion::shortfall(double t, double h) const
+{
+    // those that have become due since the last insertion wait for the next one
+    const double interval = static_cast<double>(spec.interval) * h;
+    const double due = due_mass(std::max(t - interval, 0.)), lacks = due - state.mass;
+    if (!(lacks > 0.1 * due) || !(lacks > 10 * spec.mean_mass())) return {};
+    return io::formatted(
+        "the insertion '%s' cannot keep up: %.9g kg are due at t = %.9g s and %.9g kg are "
+        "inserted; a larger region, a velocity or a smaller rate helps",
+        spec.name.c_str(), due_mass(t), t, state.mass);
+}
+
 bool Insertion::is_due(const State& now, double t) const
 {
     if (!flow.active || now.count >= spec.count) return false;
@@ -202,6 +222,13 @@ double Insertions::mass() const
 {
     double sum = 0;
     for (const Insertion& i : all) sum += i.mass();
+    return sum;
+}
+
+double Insertions::due_mass(double t) const
+{
+    double sum = 0;
+    for (const Insertion& i : all) sum += i.due_mass(t);
     return sum;
 }
 

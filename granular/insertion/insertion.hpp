@@ -92,6 +92,10 @@ public:
     const InsertionSpec& what() const { return spec; }
     std::int64_t count() const { return state.count; }  ///< of all inserted particles; a clump counts as one
     double mass() const { return state.mass; }          ///< of all inserted particles [kg]
+    double due_mass(double t) const;                    ///< mass that should be inserted until t [kg]
+    /// A warning if the inserted mass is less than the due one by more than a tenth and than ten particles;
+    /// else empty. h: step size [s]
+    std::string shortfall(double t, double h) const;
     void transfer(io::Archive& a);
 
     /// From the time t on the flow has the values of another one. What was due until then stays due: between
@@ -125,6 +129,7 @@ struct Insertions {
 
     std::int64_t count() const;
     double mass() const;
+    double due_mass(double t) const;  ///< [kg]
     /// Tells the world which particles will come until t, and inserts them before its steps. The list
     /// outlives the world.
     void start(World& world, double t);

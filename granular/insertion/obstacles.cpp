@@ -32,8 +32,8 @@ void for_images(const World& world, const Vec3& r, const F& f)
 }  // namespace
 
 Obstacles::Obstacles(const World& world, const Vec3& low, const Vec3& high, double R, std::uint16_t replica)
-    : world(world), surfaces{world.all_boundaries().data(), world.all_meshes().view()}, low(low), high(high),
-      reach(R)
+    : world(world), surfaces{world.all_boundaries().data(), world.all_meshes().view()}, closed(world),
+      low(low), high(high), reach(R)
 {
     std::vector<Sphere> all;
     double largest = R;
@@ -84,7 +84,7 @@ bool Obstacles::touches(const Vec3& r, double radius, double allowed) const
                     if ((s.r - r).norm() < s.radius + radius - allowed * std::min(s.radius, radius))
                         return true;
             }
-    return false;
+    return !closed.allow(r);
 }
 
 void Obstacles::add(const Vec3& r, double radius)

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "granular/world/world.hpp"
+#include "granular/insertion/closed_meshes.hpp"
 
 #include <unordered_map>
 
@@ -16,7 +16,8 @@ public:
     Obstacles(const World& world, const Vec3& low, const Vec3& high, double R, std::uint16_t replica);
 
     /// Whether a sphere of at most the radius R within the box overlaps a particle or a boundary by more than
-    /// this part of the smaller radius; 0: whether it touches one
+    /// this part of the smaller radius; 0: whether it touches one. Also if its centre is on the wrong side
+    /// of a closed mesh.
     bool touches(const Vec3& r, double radius, double allowed = 0) const;
     /// Adds a sphere of at most the radius R.
     void add(const Vec3& r, double radius);
@@ -39,6 +40,7 @@ private:
 
     const World& world;
     Surfaces surfaces;
+    ClosedMeshes closed;
     std::vector<std::uint32_t> near;  ///< numbers of the surfaces
     Vec3 low, high;                   ///< corners of the box
     double reach, edge = 0;           ///< R; of a cell, at least the largest diameter [m]

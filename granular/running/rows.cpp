@@ -39,7 +39,7 @@ private:
         std::string names =
             "t,kinetic_energy,contacts,pairs,particles,rotational_energy,potential_energy,"
             "momentum_x,momentum_y,momentum_z";
-        if (c.insertions != nullptr) names += ",inserted,inserted_mass,inserted_mass_rate";
+        if (c.insertions != nullptr) names += ",inserted,inserted_mass,inserted_mass_rate,due_mass";
         if (c.world->removes()) names += ",removed,removed_mass,removed_mass_rate";
         for (const char a : {'x', 'y', 'z'})
             for (const char b : {'x', 'y', 'z'}) names += std::string(",stress_") + a + b;
@@ -83,7 +83,7 @@ private:
     /// Whether Euler parameters are integrated for a moving boundary
     static bool has_orientation(const Boundary& b) { return b.shape == Boundary::Shape::mesh || b.mass > 0; }
 
-    /// Number, mass and mass flow since the last row of the inserted and removed particles
+    /// Number, mass and mass flow since the last row of the inserted and removed particles, and the due mass
     void append_flow(std::string& text, const World& w)
     {
         const Flow now{w.t(), c.insertions != nullptr ? c.insertions->mass() : 0, w.outflow().mass};
@@ -91,7 +91,10 @@ private:
             const double rate = now.t > last.t ? (mass - before) / (now.t - last.t) : 0;
             text += io::formatted(",%lld,%.9g,%.9g", static_cast<long long>(count), mass, rate);
         };
-        if (c.insertions != nullptr) add(c.insertions->count(), now.inserted, last.inserted);
+        if (c.insertions != nullptr) {
+            add(c.insertions->count(), now.inserted, last.inserted);
+            text += io::formatted(",%.9g", c.insertions->due_mass(now.t));
+        }
         if (w.removes()) add(w.outflow().count, now.removed, last.removed);
         last = now;
     }

@@ -37,8 +37,9 @@ struct Case {
     std::vector<int> moving = {};                     ///< numbers of the boundaries that move
     /// Formulas of the boundaries, which the world evaluates in each step
     std::shared_ptr<std::vector<BoundaryMotion>> motions = std::make_shared<std::vector<BoundaryMotion>>();
-    std::vector<std::string> notices = {};  ///< warnings, with their location
-    std::string files_read = {};            ///< names and checksums of the other files that were read
+    std::vector<std::string> notices = {};   ///< warnings, with their location
+    std::vector<std::string> doubtful = {};  ///< those of `notices` that --strict refuses
+    std::string files_read = {};             ///< names and checksums of the other files that were read
     /// Id of the first particle of each entry of `particles` and `fill`, and the JSON pointer of the entry
     std::vector<std::pair<std::uint32_t, std::string>> entries = {};
     std::map<std::string, std::string> tables = {};  ///< table file of an entry of `fill`, by its pointer

@@ -121,6 +121,21 @@ void read_options(ObjectReader& o, Case& out, WorldOptions& world)
     if (!(world.skin > 0 && world.skin <= 1))
         o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
     o.positive("skin", {}, world.skin);  // in single precision
+    world.start_overlap = o.number(
+        "start_overlap",
+        {"Largest overlap of particles at the start and of inserted ones, over the smaller radius [-]. "
+         "With more than 0.05, for example to continue from the table of a bed of soft particles, the "
+         "run begins with a notice. A run ends when an overlap exceeds 0.5.",
+         "0.4", R"("exclusiveMinimum": 0, "maximum": 0.5)"},
+        world.start_overlap);
+    if (!(world.start_overlap > 0 && world.start_overlap <= 0.5))
+        o.fail("start_overlap",
+               "start_overlap must be positive and at most 0.5, got " + io::shortest(world.start_overlap));
+    if (world.start_overlap > 0.05)
+        out.notices.push_back(
+            o.place("start_overlap") + ": overlaps of up to " + io::shortest(world.start_overlap) +
+            " of a radius are accepted at the start; contacts that are deeper than 0.05 push "
+            "the particles apart unless their weight holds them");
     world.scheme = read_scheme(o);
     world.orientation = o.flag("orientation",
                                {"If true, the orientations of the particles are integrated and written to "

@@ -135,7 +135,9 @@ std::optional<int> read_arguments(int argc, char** argv, Options& o)
         "let another program move boundaries: it sends their motions to stdin and receives the impulses "
         "of the particles from stdout (hilda cosim)");
     app.add_flag("--full", o.full, "run a validation with all parameter values of the dissertation");
-    app.add_flag("--strict", o.run.strict, "end with exit code 4 at a warning of the watch or of a stage");
+    app.add_flag("--strict", o.run.strict,
+                 "end with exit code 4 at a warning of the watch, of a stage or of an insertion, and with 3 "
+                 "at a column of a table without effect");
     app.add_flag("--json", o.run.json,
                  "print the summary as JSON on stdout, and nothing else; after laws: print the list as JSON");
     app.add_flag("--quiet", o.run.quiet, "print no result, no warnings and no progress");

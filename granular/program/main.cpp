@@ -121,6 +121,8 @@ Environment environment_of(const Options& o, const std::string& file)
                      .seed = o.seed};
     if (o.device.kind == Device::cuda) here.device_memory = gpu_memory(o.device.number);
     if (!o.allow_paths) here.folder = folder_of(file);
+    if (std::error_code error; std::filesystem::is_regular_file(file, error))
+        here.base = std::filesystem::path(file).parent_path().string();
     return here;
 }
 

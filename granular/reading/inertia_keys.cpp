@@ -3,6 +3,8 @@
 
 #include "granular/core/rigid_body.hpp"
 
+#include <cmath>
+
 namespace hilda::granular {
 
 namespace {
@@ -39,11 +41,14 @@ Inertia read_inertia(ObjectReader& o)
         J.xx = principal.x, J.yy = principal.y, J.zz = principal.z;
     } else {
         const auto M = matrix(o, "inertia");
+        // Programs that compute the matrix leave rounding errors of its largest entries in all of them.
+        const double rounding = 1e-12 * (std::abs(M[0]) + std::abs(M[4]) + std::abs(M[8]));
         for (const auto& [i, j] : {std::pair{0u, 1u}, {1u, 2u}, {2u, 0u}})
-            if (M[3 * i + j] != M[3 * j + i])
+            if (!(std::abs(M[3 * i + j] - M[3 * j + i]) <= rounding))
                 o.fail("inertia", "inertia must be symmetric, got " + io::shortest(M[3 * i + j]) + " and " +
                                       io::shortest(M[3 * j + i]));
-        J = Inertia(std::array{M[0], M[4], M[8], M[1], M[5], M[6]});
+        const auto mean = [&](std::size_t i, std::size_t j) { return M[i] + (M[j] - M[i]) / 2; };
+        J = Inertia(std::array{M[0], M[4], M[8], mean(1, 3), mean(5, 7), mean(6, 2)});
     }
     if (!is_inertia(J))
         o.fail(

@@ -33,8 +33,8 @@ public:
     bool has_formula(std::string_view key);
     /// A vector of three components, each a number or a formula in t
     VectorFormula formulas(std::string_view key);
-    /// The path of a file, relative to the working directory. It must be below the folder of the case
-    /// (Environment::folder), also after symbolic links have been followed.
+    /// The path of a file, relative to the folder of the case (JsonSource::base). It must be below this
+    /// folder (Environment::folder), also after symbolic links have been followed.
     std::string file(std::string_view key, const io::About& about);
     /// Readers of the elements of a list, which have the definition `of` in the schema. Empty if the key is
     /// missing: the caller refuses this if the list is required.

@@ -61,6 +61,7 @@ public:
 private:
     bool read() override
     {
+        if (o.strict && !c.doubtful.empty()) throw io::InvalidInput(c.doubtful.front() + strict_suffix);
         for (const std::string& n : c.notices) warn(n);
         check_step();
         start();  // rejects invalid particles before files are written
@@ -180,13 +181,30 @@ private:
     bool next_step() override
     {
         if (stages_are_over(true)) return false;
+        check_overlap_of_resumed();
         c.world->step();
         after_step([&](const std::string& text) { warn(text); });
         return true;
     }
+    /// A run that ended because of an overlap has saved the state after that step. It ends there again.
+    void check_overlap_of_resumed() const
+    {
+        const World& w = *c.world;
+        if (!resumed || w.steps() != resumed_at) return;
+        if (const double largest = w.watch().largest_overlap; largest > watch_limit::largest_overlap)
+            throw OverlapTooLarge(
+                io::formatted("the largest overlap of two bodies is %.3g of the smaller radius, more than "
+                              "%g, at t = %.9g s, "
+                              "where the run has ended before",
+                              largest, watch_limit::largest_overlap, w.t()));
+    }
     void end() override
     {
         check_state();  // also the forces, which contacts.csv has
+        if (c.insertions != nullptr)
+            for (const Insertion& i : c.insertions->all)
+                if (const std::string text = i.shortfall(c.world->t(), c.h); !text.empty())
+                    warn_of_stage("insertion_behind", text);
         if (c.stages == nullptr) return;
         if (c.world->steps() >= steps)
             c.stages->end_run(*c.world,

@@ -147,6 +147,8 @@ struct WorldOptions {
     Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
     double h = 0;                  ///< step [s]
     double skin = 0.1;  ///< skin of the neighbour list, in median diameters of the particles, in (0, 1]
+    /// Largest overlap of particles that are added, over the smaller radius, below 0.5
+    double start_overlap = 0.05;
     Scheme scheme = Scheme::symplectic_euler;
     bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
     Device device = {};

@@ -38,6 +38,11 @@ inline double not_finite(std::initializer_list<Vec3> all)
     return 0;
 }
 
+/// Whether the force and its tangential part on two equal spheres with this radius [m] and mass [kg], or on
+/// one at a boundary, agree in single and double precision. Products such as m* times a stiffness may
+/// overflow or vanish in single precision although radius, mass and stiffness do not. h: step size [s]
+bool has_single_forces(const PairLaw& law, double radius, double mass, double h);
+
 inline Vec3 to_double(const Vec<float>& v) { return {v.x, v.y, v.z}; }
 /// The first number of the record that is not finite; 0 if all are
 double not_finite(const WatchRecord& record);

@@ -409,13 +409,21 @@ void World::check_laws(const std::vector<Particle>& added) const
     const std::size_t n = materials.size();
     std::vector<char> of_particles(n, 0), all(n, 0);
     std::uint16_t replica = 0;
-    const auto include = [&](int material, std::uint16_t of) {
+    struct Sphere {
+        double radius, mass;
+    } smallest{1e300, 0}, largest{0, 0};
+    const auto include = [&](int material, std::uint16_t of, const Sphere& sphere) {
         of_particles[static_cast<std::size_t>(material)] = 1, replica = std::max(replica, of);
+        if (!(sphere.mass > 0)) return;  // fixed
+        if (sphere.radius < smallest.radius) smallest = sphere;
+        if (sphere.radius > largest.radius) largest = sphere;
     };
     const Particles<par::Cpu>& p = engine->arrays().particle;
     for (std::uint32_t k = 0; k < p.count; ++k)
-        include(p.species.data()[k].material, p.species.data()[k].replica);
-    for (const Particle& one : added) include(one.material, one.replica);
+        include(p.species.data()[k].material, p.species.data()[k].replica,
+                {p.velocity.data()[k].w, p.omega.data()[k].w > 0 ? 1 / double{p.omega.data()[k].w} : 0});
+    for (const Particle& one : added)
+        include(one.material, one.replica, {one.radius, one.fixed ? 0 : one.mass});
     all = of_particles;
     for (const Boundary& b : boundaries) {
         if (b.shape != Boundary::Shape::none) all[static_cast<std::size_t>(b.material)] = 1;
@@ -429,13 +437,23 @@ void World::check_laws(const std::vector<Particle>& added) const
             if (of_particles[i] != 0 && all[j] != 0 && law_of[i * n + j] == no_law)
                 refuse("laws", "no law is set between two materials that can be in contact",
                        "'" + materials[i].name + "' and '" + materials[j].name + "'");
+    if (!(largest.radius > 0)) return;
+    for (std::size_t l = 0; l < laws.size(); ++l)
+        for (const Sphere& sphere : {smallest, largest})
+            if (!has_single_forces(laws[l], sphere.radius, sphere.mass, options.h))
+                refuse(
+                    "laws",
+                    "the forces of law " + std::to_string(l) +
+                        " are outside the range of single precision for particles of this radius [m]; choose "
+                        "other units",
+                    sphere.radius);
 }
 
-/// Checks that the particles with ids from `first` on overlap other particles and boundaries by at most 5 %
-/// of the smaller radius. Throws io::InvalidInput.
+/// Checks that the particles with ids from `first` on overlap other particles and boundaries by at most
+/// WorldOptions::start_overlap of the smaller radius. Throws io::InvalidInput.
 void World::check_overlaps(std::uint32_t first) const
 {
-    constexpr double max_overlap = 0.05;  // overlap over the smaller radius
+    const double max_overlap = options.start_overlap;
     update_for_query();
     struct Fault {
         bool boundary = true;
@@ -476,7 +494,8 @@ void World::check_overlaps(std::uint32_t first) const
                found.R);
     refuse(name_of(found.i) + " and " +
                (found.boundary ? "boundary " + std::to_string(found.j) : name_of(found.j)),
-           "must not overlap by more than 5 % of a radius at the start", found.delta);
+           "must not overlap by more than " + io::shortest(100 * max_overlap) + " % of a radius at the start",
+           found.delta);
 }
 
 }  // namespace hilda::granular

@@ -40,9 +40,9 @@ LAWS = [
     {"between": ["c", "c"], "restitution": 0.5, "mu": 0.1, "normal": {"law": "kuwabara-kono", "A": 1e-6},
      "tangential": {"law": "mindlin"}},
     {"between": ["d", "d"], "mu": 0.1, "normal": {"law": "walton-braun", "k_1": 1e4, "k_2": 2e4, "S": 10},
-     "tangential": {"law": "coulomb", "k_t": 1e4}},
+     "tangential": {"law": "coulomb", "k_t": 1e4, "gamma_t": 3}},
     {"between": ["b", "d"], "restitution": 0.5, "mu": 0.1, "normal": {"law": "walton-braun", "k_1": 1e4},
-     "tangential": {"law": "coulomb", "k_t": 1e4}},
+     "tangential": {"law": "coulomb", "k_t": 1e4, "gamma_t": 3}},
     {"between": ["a", "d"], "restitution": 0.5}, {"between": ["c", "d"], "restitution": 0.5}]
 FILL = {"radius": 0.05, "material": "b"}
 CASE = {

@@ -37,17 +37,17 @@ def tables(runs):
         return runs.case(f"below/{name}", end=1e-4, interval=5e-5,
                          fill=[{"type": "csv", "file": path, "material": "glass"}])
 
-    for k, path in enumerate(("below/deeper/table.csv", f"{here}/below/deeper/table.csv",
-                              "below/../below/deeper/table.csv")):
+    for k, path in enumerate(("deeper/table.csv", f"{here}/below/deeper/table.csv", "../below/deeper/table.csv")):
         runs.finish(case(f"accepted{k}", path), "--quiet", "--output", f"accepted{k}")
-    for path in ("table.csv", f"{here}/table.csv", "below/../table.csv", "below/link.csv", "below/folder/table.csv",
-                 "/dev/zero", "/etc/passwd", "none.csv"):
+    for path in ("../table.csv", f"{here}/table.csv", "deeper/../../table.csv", "link.csv", "folder/table.csv",
+                 "/dev/zero", "/etc/passwd", "../none.csv"):
         message = rf'\(/fill/0/file\): file must be below the folder of the case, \S+/below, got "{path}"; ' \
                   "--allow-paths accepts it"
         runs.refused(case("refused", path), 3, message)
         expect(not (here / "out/refused").exists(), "a refused case writes no files")
-    runs.refused(case("refused", "below/none.csv"), 3, r"\(/fill/0/file\): below/none.csv: does not exist")
-    runs.finish(case("elsewhere", "table.csv"), "--quiet", "--output", "elsewhere", "--allow-paths")
+    # relative to the case: the table of this name in the working directory is not read
+    runs.refused(case("refused", "table.csv"), 3, r"\(/fill/0/file\): below/table.csv: does not exist")
+    runs.finish(case("elsewhere", "../table.csv"), "--quiet", "--output", "elsewhere", "--allow-paths")
     runs.refused(case("refused", "/dev/zero"), 3, "/dev/zero: is not a regular file", "--allow-paths")
 
 

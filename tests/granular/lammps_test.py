@@ -109,7 +109,8 @@ def files(runs):
 def refusals(runs):
     """What LAMMPS has no counterpart of is refused with its place."""
     def law(**changes):
-        return {"laws": [dict(CASE["laws"][0], **changes), CASE["laws"][1]]}
+        first = dict(CASE["laws"][0], **changes)
+        return {"laws": [{key: value for key, value in first.items() if value is not None}, CASE["laws"][1]]}
 
     def wall(**changes):
         return {"boundaries": [dict(PLANE, **changes)]}
@@ -118,7 +119,7 @@ def refusals(runs):
     insert = {"rate": 10, "radius": R, "material": "glass", "region": {"type": "box", "low": [0, 0, 0.01], "high": [0.01, 0.01, 0.015]}}
     clump = {"name": "pair", "material": "glass", "spheres": [{"r": [0, 0, 0], "radius": R}, {"r": [R, 0, 0], "radius": R}]}
     for pointer, what, changes in (
-            ("/laws/0/normal", "the normal law hooke", law(normal={"law": "hooke", "k_n": 1e4}, tangential={"law": "none"})),
+            ("/laws/0/normal", "the normal law hooke", law(normal={"law": "hooke", "k_n": 1e4}, tangential={"law": "none"}, mu=None)),
             ("/laws/0/tangential", "the tangential law coulomb", law(tangential={"law": "coulomb"})),
             ("/laws/0/tangential/spring_bound", "spring_bound", law(tangential={"law": "mindlin", "spring_bound": True})),
             ("/laws/0/mu_s", "mu_s above mu", law(mu_s=0.4)),

@@ -27,13 +27,14 @@ struct FillSpec {
     std::uint64_t seed = 1;
     int material = 0;  ///< index; -1 with particles of a table: as in the table
     std::uint16_t replica = 0;
-    int attached_to = -1;                  ///< number of a boundary; -1: none
-    Vec3 v = {0, 0, 0};                    ///< [m/s]
-    double random_v = 0;                   ///< magnitude of an added velocity of random direction [m/s]
-    std::vector<Particle> particles = {};  ///< of the table; empty for the other types
-    std::uint64_t checksum = 0;            ///< of the table file
-    std::string file = {};                 ///< name of the table file
-    PlacedClumps clumps = {};              ///< in place of the particles
+    int attached_to = -1;                   ///< number of a boundary; -1: none
+    Vec3 v = {0, 0, 0};                     ///< [m/s]
+    double random_v = 0;                    ///< magnitude of an added velocity of random direction [m/s]
+    std::vector<Particle> particles = {};   ///< of the table; empty for the other types
+    std::uint64_t checksum = 0;             ///< of the table file
+    std::string file = {};                  ///< name of the table file
+    std::vector<std::string> unknown = {};  ///< messages about columns of the table without effect
+    PlacedClumps clumps = {};               ///< in place of the particles
 };
 
 /// A type of fill. A file registers it by io::Registry<FillType>::add.
@@ -65,9 +66,10 @@ FillSpec read_fill(ObjectReader& o, const std::optional<double>& radius = {});
 
 /// Reads particles from a table (CSV) such as the particles.csv of a run: a line of column names and one line
 /// per particle. Required columns: x, y, z, radius. Optional columns: material (index), vx, vy, vz, omega_x,
-/// omega_y, omega_z, e0 to e3. Other columns are ignored. SI units, global frame. Throws io::InvalidInput
-/// with file and line.
-std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file);
+/// omega_y, omega_z, e0 to e3. Other columns have no effect, except that `unknown` gets a message for each
+/// of them but id. SI units, global frame. Throws io::InvalidInput with file and line.
+std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file,
+                                       std::vector<std::string>* unknown = nullptr);
 
 /// "FILE:LINE" of the particle with this number, counted from 0, in a table file; "FILE" if it cannot be read
 std::string place_in_table(const std::string& file, std::size_t particle);

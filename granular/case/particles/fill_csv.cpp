@@ -5,11 +5,13 @@
 #include "io/error.hpp"
 #include "io/files.hpp"
 #include "io/formats/csv.hpp"
+#include "io/nearest.hpp"
 #include "io/option_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace hilda::granular {
 
@@ -74,21 +76,52 @@ Particle particle(const io::CsvRow& row)
     return p;
 }
 
+/// A message for each column that has no effect, with the known name that is probably meant
+std::vector<std::string> unknown_columns(const io::CsvRow& row, const std::string& file)
+{
+    static const std::vector<std::string> known = {
+        "id", "material", "radius",  "x",       "y",  "z",  "vx", "vy",
+        "vz", "omega_x",  "omega_y", "omega_z", "e0", "e1", "e2", "e3"};
+    // common names that are not near
+    static const std::map<std::string, std::string, std::less<>> meant = {
+        {"wx", "omega_x"},     {"wy", "omega_y"},     {"wz", "omega_z"}, {"omegax", "omega_x"},
+        {"omegay", "omega_y"}, {"omegaz", "omega_z"}, {"r", "radius"},   {"R", "radius"},
+        {"type", "material"},  {"q0", "e0"},          {"q1", "e1"},      {"q2", "e2"},
+        {"q3", "e3"}};
+    std::vector<std::string> absent, messages;
+    const auto is_given = [&](const std::string& name) {
+        return std::find(row.names.begin(), row.names.end(), name) != row.names.end();
+    };
+    for (const std::string& name : known)
+        if (!is_given(name)) absent.push_back(name);
+    for (const std::string_view name : row.names) {
+        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+        const auto synonym = meant.find(name);
+        const std::string nearest = synonym != meant.end() && !is_given(synonym->second)
+                                        ? synonym->second
+                                        : io::nearest(name, absent);
+        messages.push_back(file + ":1: the column '" + std::string(name) + "' has no effect" +
+                           (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
+    }
+    return messages;
+}
+
 FillSpec read_table(ObjectReader& o, const std::optional<double>&)
 {
     FillSpec f;
     const std::string file = f.file = o.file(
         "file",
-        {"CSV file with the particles. A relative path refers to the working directory of the program. The "
+        {"CSV file with the particles. A relative path refers to the folder of the case. The "
          "file must be below the folder of the case, unless --allow-paths is given. The first line has the "
          "column names. Columns x, y, z and radius (m) are required; vx, vy, vz (m/s), omega_x, omega_y, "
          "omega_z (rad/s), e0, e1, e2, e3 and material (number of the material, counted from 0) are "
-         "optional; others are ignored. The file particles.csv of a run has this format.",
+         "optional. Other columns but id have no effect; a warning names them, and --strict refuses them. "
+         "The file particles.csv of a run has this format.",
          R"("out/bed/particles.csv")"});
     if (o.records_schema()) return f;
     try {
         const std::string text = io::read_file(file, most_bytes);
-        f.particles = particles_of_csv(text, file);
+        f.particles = particles_of_csv(text, file, &f.unknown);
         f.checksum = io::checksum(text.data(), text.size());
     } catch (const io::IoError& e) {
         o.fail("file", e.what());
@@ -107,11 +140,15 @@ const bool registered_fill_csv =
 
 }  // namespace
 
-std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file)
+std::vector<Particle> particles_of_csv(const std::string& text, const std::string& file,
+                                       std::vector<std::string>* unknown)
 {
     std::vector<Particle> all;
     all.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')));
-    io::read_csv(text, file, [&](const io::CsvRow& row) { all.push_back(particle(row)); });
+    io::read_csv(text, file, [&](const io::CsvRow& row) {
+        if (all.empty() && unknown != nullptr) *unknown = unknown_columns(row, file);
+        all.push_back(particle(row));
+    });
     if (all.empty()) throw io::InvalidInput(file + ": contains no particles");
     return all;
 }

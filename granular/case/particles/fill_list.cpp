@@ -42,6 +42,8 @@ void FillList::read(ObjectReader& o, Case& c, EntryKeys& keys, const WorldOption
     if (!options.orientation)
         for (Particle& p : spec.particles) p.e = Particle().e;
     const int group = keys.group(o);
+    c.notices.insert(c.notices.end(), spec.unknown.begin(), spec.unknown.end());
+    c.doubtful.insert(c.doubtful.end(), spec.unknown.begin(), spec.unknown.end());
     if (from_csv) c.files_read += "\n" + o.pointer("file") + ' ' + std::to_string(spec.checksum);
     o.finish();
     groups.push_back(group);

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "io/elementary.hpp"
+#include "io/arithmetic/elementary.hpp"
 
 #include <Eigen/Core>
 

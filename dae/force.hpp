@@ -35,9 +35,9 @@ public:
     /// Potential energy [J], or 0 for a force without potential
     virtual double potential_energy(const State&) const { return 0; }
 
-    /// The functions of the state whose zeros are the places where the force has a kink or a jump, such as the
-    /// distance to a stop. Adaptive schemes end a step where one of them changes its sign; without them they
-    /// may step over the place.
+    /// The functions of the state whose zeros are the places where the force has a kink or a jump, such as
+    /// the distance to a stop. Adaptive schemes end a step where one of them changes its sign; without them
+    /// they may step over the place.
     virtual int switches() const { return 0; }
     /// Writes their values in the state x; NaN where there is none. The function must not allocate memory.
     virtual void switching(const State& /*x*/, double* /*out*/) const {}

@@ -2,7 +2,7 @@
 #include "dae/function_of_time.hpp"
 
 #include "dae/curves/sampled_curve.hpp"
-#include "io/range.hpp"
+#include "io/arithmetic/range.hpp"
 
 #include <algorithm>
 #include <array>
@@ -131,8 +131,8 @@ double FunctionOfTime::resolved_until(double from, double to) const
     return to;
 }
 
-/// Whether the function is monotone, or near its chord in each quarter of the interval; otherwise `pulse` is a
-/// place before those that are not.
+/// Whether the function is monotone, or near its chord in each quarter of the interval; otherwise `pulse`
+/// is a place before those that are not.
 bool FunctionOfTime::is_resolved(double from, double to, double& pulse) const
 {
     constexpr int quarters = 4;

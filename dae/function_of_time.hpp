@@ -3,8 +3,8 @@
 
 #pragma once
 
+#include "io/arithmetic/range.hpp"
 #include "io/expression.hpp"
-#include "io/range.hpp"
 
 #include <memory>
 #include <optional>
@@ -25,9 +25,9 @@ public:
     /// The first place in (from, to] where the function may have a jump or a kink, to the last digits of t
     std::optional<double> first_break(double from, double to) const;
 
-    /// The end of an interval from `from`, at most to `to`, in which the function is monotone, or differs from
-    /// its chord in each quarter by at most a quarter of the variation of the five values there. The stages of
-    /// a step of this length see each pulse. There must be no break point inside.
+    /// The end of an interval from `from`, at most to `to`, in which the function is monotone, or differs
+    /// from its chord in each quarter by at most a quarter of the variation of the five values there. The
+    /// stages of a step of this length see each pulse. There must be no break point inside.
     double resolved_until(double from, double to) const;
 
     double value(double t) const;

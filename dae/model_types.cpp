@@ -4,9 +4,9 @@
 
 #include "dae/curves/sampled_curve.hpp"
 #include "dae/driver.hpp"
+#include "io/arithmetic/jet.hpp"
 #include "io/files.hpp"
 #include "io/formats/csv.hpp"
-#include "io/jet.hpp"
 #include "io/nearest.hpp"
 #include "io/option_values.hpp"
 #include "lie/check.hpp"

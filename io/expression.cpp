@@ -11,9 +11,9 @@
 #include <system_error>
 #include <type_traits>
 
+#include "io/arithmetic/range.hpp"
 #include "io/formats/characters.hpp"
 #include "io/nearest.hpp"
-#include "io/range.hpp"
 
 namespace hilda::io {
 namespace {
@@ -66,7 +66,7 @@ T power(T x, int n)
     return y;
 }
 
-/// The smaller and the larger of two numbers or jets; those of ranges are in io/range.hpp
+/// The smaller and the larger of two numbers or jets; those of ranges are in io/arithmetic/range.hpp
 template <class T>
 T min(const T& a, const T& b)
 {
@@ -78,8 +78,8 @@ T max(const T& a, const T& b)
     return select(a - b, a, b);
 }
 
-/// Evaluates the program for T = double, Jet or RangeJet. x[0] is the top of the value stack; its first element is not
-/// used.
+/// Evaluates the program for T = double, Jet or RangeJet. x[0] is the top of the value stack; its first
+/// element is not used.
 template <class T>
 T evaluate(std::span<const Instruction> program, std::span<const T> variables) noexcept
 {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/jet.hpp"
+#include "io/arithmetic/jet.hpp"
 
 namespace hilda::io {
 

@@ -115,8 +115,8 @@ public:
     /// smooth functions of time that the steps of an adaptive scheme resolve: the interval has no pulse that
     /// is short against it.
     virtual SmoothTime smooth_until(double /*t*/, double t_end) const { return {t_end}; }
-    /// Whether a prescribed velocity jumps in (t, t_end], by which the velocities change by an impulse. Called
-    /// for each step of fixed length.
+    /// Whether a prescribed velocity jumps in (t, t_end], by which the velocities change by an impulse.
+    /// Called for each step of fixed length.
     virtual bool velocity_jumps(double /*t*/, double /*t_end*/) const { return false; }
     /// Whether the state counts revolutions, which are lost if bodies turn relative to each other by half a
     /// turn or more from one call of accepted() to the next

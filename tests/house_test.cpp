@@ -98,7 +98,7 @@ const std::map<std::string, FolderOrder> ordered_rooms = {
 
 /// The folders of each room, relative to it; "" is the room itself.
 const std::map<std::string, std::set<std::string>> folders = {
-    {"io", {"", "formats", "schema"}},
+    {"io", {"", "arithmetic", "formats", "schema"}},
     {"lie", {"", "integrators", "solver", "steps"}},
     {"dae", {"", "constraints", "curves", "forces", "joints", "outputs"}},
     {"contact",

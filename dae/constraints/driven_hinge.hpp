@@ -5,7 +5,7 @@
 #include "dae/block.hpp"
 #include "dae/block_terms.hpp"
 #include "dae/driver.hpp"
-#include "io/jet.hpp"
+#include "io/arithmetic/jet.hpp"
 
 namespace hilda::dae {
 

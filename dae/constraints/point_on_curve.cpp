@@ -4,7 +4,7 @@
 
 #include "dae/block_terms.hpp"
 #include "dae/model_types.hpp"
-#include "io/jet.hpp"
+#include "io/arithmetic/jet.hpp"
 #include "lie/check.hpp"
 
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "io/jet.hpp"
-#include "io/range.hpp"
+#include "io/arithmetic/jet.hpp"
+#include "io/arithmetic/range.hpp"
 
 #include <Eigen/Core>
 #include <unsupported/Eigen/Splines>

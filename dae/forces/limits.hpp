@@ -34,8 +34,8 @@ struct Stop {
         if (!(factor > 0)) return {0, 0};
         return {stiffness * factor, stiffness * (q - (q > maximum ? maximum : minimum)) * sign * damping};
     }
-    /// The functions whose zeros are the kinks of the force: the distances to both ends of the range, infinite
-    /// without a limit, and the factor of the damping beyond it
+    /// The functions whose zeros are the kinks of the force: the distances to both ends of the range,
+    /// infinite without a limit, and the factor of the damping beyond it
     static constexpr int switches = 3;
     void switching(double q, double qdot, double* out) const
     {

@@ -45,14 +45,14 @@ int main()
     world.step(std::lround(0.15 / options.h));  // settles for 0.15 s
 
     // Called at the beginning of each step. The speed of the wall is proportional to the missing force and at
-    // most 0.1 m/s.
+    // most 0.02 m/s, so that the bed remains near equilibrium.
     world.before_each_step([](World& w) {
         const double F =
             -w.wrench(moved).F.x;  // of the bed on the wall, positive where the bed is compressed [N]
-        const double v = 0.1 * (F_set - F) / F_set;
-        w.boundary(moved).v = {std::clamp(v, -0.1, 0.1), 0, 0};
+        const double v = 0.02 * (F_set - F) / F_set;
+        w.boundary(moved).v = {std::clamp(v, -0.02, 0.02), 0, 0};
     });
-    world.step(std::lround(0.3 / options.h));
+    world.step(std::lround(0.9 / options.h));
 
     // Forces on all boundaries, from one pass over the contacts
     Vec3 sum = {0, 0, 0};

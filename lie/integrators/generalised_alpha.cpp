@@ -8,9 +8,9 @@
 ///
 ///     α_m = (2ρ - 1)/(ρ + 1),   α_f = ρ/(ρ + 1),   γ = ½ + α_f - α_m,   β = (γ + ½)²/4
 ///
-/// Source: Brüls, Cardona, Arnold (2012), Mech. Mach. Theory 48, 121-137. The coefficients are those of Chung
-/// and Hulbert (1993). ρ = ρ∞ is the spectral radius for infinite frequency (Settings::rho_infinity), from 0 to
-/// 0.99: for ρ = 1 errors of λ of each step are not damped, and λ is of order 1.
+/// Source: Brüls, Cardona, Arnold (2012), Mech. Mach. Theory 48, 121-137. The coefficients are those of
+/// Chung and Hulbert (1993). ρ = ρ∞ is the spectral radius for infinite frequency (Settings::rho_infinity),
+/// from 0 to 0.99: for ρ = 1 errors of λ of each step are not damped, and λ is of order 1.
 ///
 /// Start: a_0 = v̇_0 + (α_m - α_f) h v̈_0 ≈ v̇(t_0 + (α_m - α_f) h), as in Arnold, Brüls, Cardona (2015),
 /// Numer. Math. 129, 149-179. a_n is then a second-order approximation of v̇(t_n + (α_m - α_f) h) for all n.
@@ -264,8 +264,8 @@ private:
         perturb_velocities(h);
     }
 
-    /// Adds the part of h² (C_q v̈ + (0, ω̄ × ω̄̇ / 12)) in the directions of the rows to the velocities of x_n.
-    /// e holds h v̈ on entry.
+    /// Adds the part of h² (C_q v̈ + (0, ω̄ × ω̄̇ / 12)) in the directions of the rows to the velocities of
+    /// x_n. e holds h v̈ on entry.
     void perturb_velocities(double h)
     {
         const double C_q = 1. / 6 - beta - 0.5 * (alpha_m - alpha_f);

@@ -79,8 +79,8 @@ void SwitchSearch::search(std::size_t k, const Path& path, Crossing& crossing)
     }
 }
 
-/// Whether |g| may have a minimum, at which g may change its sign, between the places n and n + 1: both slopes
-/// of |g| point into the interval.
+/// Whether |g| may have a minimum, at which g may change its sign, between the places n and n + 1: both
+/// slopes of |g| point into the interval.
 bool SwitchSearch::may_have_minimum(std::size_t k, const Path& path, int n)
 {
     const double now = std::abs(at[n][k]), next = std::abs(at[n + 1][k]);
@@ -94,7 +94,8 @@ bool SwitchSearch::may_have_minimum(std::size_t k, const Path& path, int n)
     return falls_from(n, now, 1) && falls_from(n + 1, next, -1);
 }
 
-/// Looks for the minimum of |g| between the places n and n + 1 by golden sections. Whether g changes its sign.
+/// Looks for the minimum of |g| between the places n and n + 1 by golden sections. Whether g changes its
+/// sign.
 bool SwitchSearch::search_minimum(std::size_t k, const Path& path, int n, Crossing& crossing)
 {
     constexpr double golden = 0.3819660112501051, narrow_enough = 1e-10;

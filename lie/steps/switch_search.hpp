@@ -12,10 +12,11 @@ namespace hilda::lie {
 
 class System;
 
-/// Finds where a switching function (System::switching) changes its sign within a step, on a path between its
-/// ends: by default the cubic polynomials of set_between(). Where a function has one sign,
-/// it is looked at inside as well: where the slopes of |g| at two neighbours of nine equidistant places point inwards, its minimum is located, so that a
-/// stop that a body touches and leaves, or flies through, within one step is found.
+/// Finds where a switching function (System::switching) changes its sign within a step, on a path between
+/// its ends: by default the cubic polynomials of set_between(). Where a function has one sign, it is looked
+/// at inside as well: where the slopes of |g| at two neighbours of nine equidistant places point inwards,
+/// its minimum is located, so that a stop that a body touches and leaves, or flies through, within one step
+/// is found.
 class SwitchSearch {
 public:
     explicit SwitchSearch(const System& system);

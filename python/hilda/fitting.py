@@ -141,8 +141,8 @@ def fit(source: Source, data: str | os.PathLike[str] | Mapping[str, ArrayLike], 
         jobs: number of concurrent runs.
         max_fit_iterations: largest number of iterations of the fit.
         step: step [s] of an integrator with fixed steps.
-        **settings: the settings of Model.run(): rtol, atol, tolerance, max_iterations, linear_solver, rho_infinity,
-            reparametrise, and those that integrators of plug-ins declare.
+        **settings: the settings of Model.run(): rtol, atol, max_step, tolerance, max_iterations, linear_solver,
+            rho_infinity, reparametrise, and those that integrators of plug-ins declare.
 
     The minimum is that of Levenberg and Marquardt's method in a trust region. Ctrl-C ends the fit. The warnings of a fit
     that reaches the minimum are SimulationWarnings as well.

@@ -227,9 +227,9 @@ class Model:
 
     def run(self, integrator: str | type[Integrator] = _hilda.default_integrator, *, end: float | None = None,
             step: float | None = None, interval: float | None = None, rtol: float | None = None,
-            atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
-            linear_solver: str | None = None, rho_infinity: float | None = None, reparametrise: bool = False,
-            reactions: bool = False, columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False,
+            atol: float | None = None, max_step: float | None = None, tolerance: float | None = None,
+            max_iterations: int | None = None, linear_solver: str | None = None, rho_infinity: float | None = None,
+            reparametrise: bool = False, reactions: bool = False, columns: Iterable[str] = (), observer: Callable[[State], Any] | None = None, force: bool = False,
             **settings: Any) -> Result:
         """Integrates the model and returns a Result.
 
@@ -240,6 +240,7 @@ class Model:
                 rtol and atol instead.
             interval: time between rows of the result [s]; default: end/1000, 0: a row for each step.
             rtol, atol: tolerances of integrators with adaptive steps; default 1e-10, and atol = rtol.
+            max_step: longest of their steps [s]; default: no limit.
             tolerance, max_iterations: of Newton's method; default 1e-10 and 30.
             linear_solver: "auto", the default, "klu" or "condensed".
             rho_infinity: numerical damping from 0 to 1, default 0.8, of integrators that have it.
@@ -267,7 +268,7 @@ class Model:
         """
         core = self._core()
         settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
-                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
+                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, max_step=max_step, reparametrise=reparametrise)
         outcome = _hilda._run(core, _used("run", core, integrator), end, step, interval,
                               settings_as_text("run", _keywords, settings), force, warn, reactions,
                               [columns] if isinstance(columns, str) else list(columns), observer)

@@ -50,13 +50,13 @@ class Simulation:
 
     def __init__(self, model: Model | Source, integrator: str | type[Integrator] = _hilda.default_integrator, *,
                  step: float | None = None, end: float | None = None, interval: float | None = None, rtol: float | None = None,
-                 atol: float | None = None, tolerance: float | None = None, max_iterations: int | None = None,
-                 linear_solver: str | None = None, rho_infinity: float | None = None, reparametrise: bool = False,
-                 force: bool = False, **settings: Any) -> None:
+                 atol: float | None = None, max_step: float | None = None, tolerance: float | None = None,
+                 max_iterations: int | None = None, linear_solver: str | None = None, rho_infinity: float | None = None,
+                 reparametrise: bool = False, force: bool = False, **settings: Any) -> None:
         self.model = model if isinstance(model, Model) else Model(model)
         core = self.model._core()
         settings.update(tolerance=tolerance, max_iterations=max_iterations, linear_solver=linear_solver,
-                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, reparametrise=reparametrise)
+                        rho_infinity=rho_infinity, rtol=rtol, atol=atol, max_step=max_step, reparametrise=reparametrise)
         self._core = _hilda._Simulation(core, _used("Simulation", core, integrator), end, step, interval,
                                         settings_as_text("Simulation", ("integrator", "step", "end", "interval", "force"),
                                                          settings),

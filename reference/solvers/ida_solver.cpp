@@ -316,8 +316,8 @@ private:
         return std::min({0.5 / std::sqrt(std::max(norm, 1e-300)), 1e-3, h});
     }
 
-    /// Sets the time that the next step must not pass, if it would: the step resolves the functions of time in
-    /// the system and ends before their break points, and bodies turn by a limited angle where turns are
+    /// Sets the time that the next step must not pass, if it would: the step resolves the functions of time
+    /// in the system and ends before their break points, and bodies turn by a limited angle where turns are
     /// counted.
     void limit_step()
     {
@@ -345,8 +345,8 @@ private:
         to_restart = true;
     }
 
-    /// Returns to the zero of a switching function in the last step, from where IDA restarts. Whether there is
-    /// one.
+    /// Returns to the zero of a switching function in the last step, from where IDA restarts. Whether there
+    /// is one.
     bool return_to_switch()
     {
         equations.read(t, map(y.get()), after);

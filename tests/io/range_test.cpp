@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Interval arithmetic, and the parts of expressions where they are not smooth.
 
-#include "io/range.hpp"
+#include "io/arithmetic/range.hpp"
 #include "io/expression.hpp"
 
 #include <catch2/catch.hpp>

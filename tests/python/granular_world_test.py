@@ -24,7 +24,7 @@ def box(**keys):
     """60 particles above a floor."""
     return {"hilda_case": 1, "name": "box", "domain": {"low": [-0.01, -0.01, -0.005], "high": [0.03, 0.03, 0.06]},
             "step": 1e-5, "end": 0.01, "materials": [{"name": "glass", "density": 2500, "E": 1e7, "nu": 0.24}],
-            "laws": [{"restitution": 0.5, "mu": 0.3}],
+            "laws": [{"restitution": 0.5, "mu": 0.3, "tangential": {"law": "mindlin"}}],
             "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
                            {"name": "lid", "type": "sphere", "radius": 4e-3, "r": [0.01, 0.01, 0.05], "mass": 1e-3}],
             "fill": [{"type": "lattice", "low": [0, 0, 0], "high": [0.02, 0.02, 0.012], "radius": 1.9e-3, "spacing": 1.02}], **keys}

@@ -544,7 +544,9 @@ TEST_CASE("an invalid particle table is rejected with its line", "[granular][fil
         {"", "t: contains no particles"},
         {"x,y,z,radius\n", "t: contains no particles"},
         {"x,y,radius\n1,2,3\n", "t:2: missing column z; the columns are 'x', 'y', 'radius'"},
-        {"x;y;z;radius\n1;2;3;1\n", "t:2: missing column x; the columns are 'x;y;z;radius'"},
+        {"x;y;z;radius\n1;2;3;1\n",
+         "t:1: the names of the columns are separated by semicolons; a table has commas, and points in its "
+         "numbers"},
         {"x,y,z,radius\n1,2,3,1\n\n1,2,three,1\n", "t:4: z must be a finite number, got 'three'"},
         {"x,y,z,radius\n1,2,nan,1\n", "t:2: z must be a finite number, got 'nan'"},
         {"x,y,z,radius\n1,2,3,-1\n", "t:2: radius must be positive, got -1"},

@@ -21,7 +21,7 @@ namespace {
 const std::map<std::string, std::string> other = {{"--tolerance", "1e-11"},   {"--max-iterations", "29"},
                                                   {"--linear-solver", "klu"}, {"--rho-infinity", "0.5"},
                                                   {"--reparametrise", ""},    {"--rtol", "1e-08"},
-                                                  {"--atol", "1e-07"}};
+                                                  {"--atol", "1e-07"},        {"--max-step", "0.05"}};
 
 }  // namespace
 

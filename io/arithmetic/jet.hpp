@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "io/elementary.hpp"
+#include "io/arithmetic/elementary.hpp"
 
 namespace hilda::io {
 

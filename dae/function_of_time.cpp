@@ -176,7 +176,7 @@ bool FunctionOfTime::is_near_chord(const Point& from, const Point& to, double ma
         const double at_a = from.f + slope * (a - from.t), at_b = from.f + slope * (b - from.t);
         if (all.hi <= std::min(at_a, at_b) + margin && all.lo >= std::max(at_a, at_b) - margin) continue;
         const double m = middle(a, b), off = std::abs(value(m) - middle(at_a, at_b));
-        if (b - a > leaf) {
+        if (b - a > leaf && m > a && m < b && !left.is_full()) {
             left.push_halves(a, m, b);
             continue;
         }

@@ -11,6 +11,8 @@
 #include "run/single_run.hpp"
 #include "run/watch/run_check.hpp"
 
+#include <fmt/format.h>
+
 #include <iostream>
 
 namespace hilda::studies {

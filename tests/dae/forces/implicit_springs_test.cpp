@@ -187,7 +187,7 @@ struct Spatial {
                     x));
         start(model, x);
     }
-    Eigen::VectorXd after(const std::string& scheme, double h, double end, lie::Settings settings = {})
+    Eigen::VectorXd after(const std::string& scheme, double h, double end, const lie::Settings& settings = {})
     {
         const auto integrator = lie::scheme(scheme).make(model, settings);
         State at = x;

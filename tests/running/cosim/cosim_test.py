@@ -42,8 +42,8 @@ COSIM = {"hilda_cosim": 1, "model": "model.json", "case": "case.json", "end": 0.
 SEAT = {"hilda_case": 1, "name": "seat", "domain": {"low": [-0.02] * 3, "high": [0.02, 0.02, 0.04]}, "step": 2e-6, "end": 1,
         "interval": 1e-3, "frame_interval": 1, "gravity": [0, 0, 0],
         "materials": [{"name": "glass", "density": 2500, "E": 7e7, "nu": 0.24}, {"name": "heavy", "density": 1e9, "E": 7e7, "nu": 0.24}],
-        "laws": [{"between": ["glass", "heavy"], "mu": 0, "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}},
-                 {"between": ["heavy", "heavy"], "mu": 0, "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}}],
+        "laws": [{"between": ["glass", "heavy"], "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}},
+                 {"between": ["heavy", "heavy"], "normal": {"law": "hooke", "k_n": 2e3, "gamma_n": 0}}],
         "boundaries": [{"name": "ball", "type": "sphere", "radius": RADIUS, "r": [0, 0, 0.0071], "material": "glass"}],
         "particles": [{"r": [4e-3 * math.cos(a), 4e-3 * math.sin(a), 1.1e-3], "radius": 1.2e-3, "material": "heavy"}
                       for a in (0, 2.1, 4.2)]}

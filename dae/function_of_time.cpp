@@ -101,6 +101,9 @@ std::optional<double> first_zero(const io::Expression& g, double from, double to
 FunctionOfTime::FunctionOfTime(io::Expression f) : formula(std::move(f))
 {
     switching = formula->switching_functions();
+    for (int k = -10; k <= 10; ++k)
+        if (const double f_k = std::abs(formula->value(std::ldexp(1., k))); std::isfinite(f_k))
+            scale = std::max(scale, f_k);
 }
 
 FunctionOfTime::FunctionOfTime(std::shared_ptr<const SampledCurve> samples) : curve(std::move(samples)) {}
@@ -137,7 +140,7 @@ bool FunctionOfTime::is_resolved(double from, double to, double& pulse) const
 {
     constexpr int quarters = 4;
     // Of the largest value, and of the difference of the largest and the smallest of the five values
-    constexpr double negligible = 1e-8, part = 0.25;
+    constexpr double negligible = 1e-8, part = 0.25, rounding = 1e-12;
     std::array<double, quarters + 1> t{}, seen{};
     std::array<io::RangeJet, quarters> all{};
     double largest = curve ? curve->largest() : 0;
@@ -154,7 +157,7 @@ bool FunctionOfTime::is_resolved(double from, double to, double& pulse) const
     }
     if (rises || falls) return true;
     const auto [lo, hi] = std::minmax_element(seen.begin(), seen.end());
-    const double margin = part * (*hi - *lo) + negligible * largest;
+    const double margin = part * (*hi - *lo) + negligible * largest + rounding * scale;
     for (int k = 0; k < quarters; ++k) {
         // A function is within (b - a) (max ḟ - min ḟ)/4 of its chord.
         if (0.25 * (t[k + 1] - t[k]) * all[k].fdot.width() <= margin) continue;

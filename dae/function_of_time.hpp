@@ -42,6 +42,7 @@ private:
     io::RangeJet bounds(double from, double to) const;
 
     std::optional<io::Expression> formula;
+    double scale = 0;  ///< of the values of the formula, for the rounding errors of their bounds
     std::vector<io::Expression> switching;  ///< their zeros are the break points
     std::shared_ptr<const SampledCurve> curve;
 };

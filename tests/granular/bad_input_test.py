@@ -221,7 +221,7 @@ def derived(checks):
                            ({"radius": 1e-30, "least_radius": 1e-30, "low": [0, 0, 0.2], "high": [3e-30, 3e-30, 0.2 + 1e-9],
                              "count": 1}, "(mass must be in the range|high must be at least)")):
         checks.refused_case("a combination", json.dumps(dict(CASE, fill=[dict(CASE["fill"][0], **changes)])),
-                            "/fill/0(/high/2)?", value, "--force")
+                            "/fill/0(/high/2)?", value, "--force", "--accept-step")
     heavy = dict(CASE["materials"][0], density=3e38)
     radius = {"r": [0, 0, 0], "radius": 0.8, "material": "a"}
     checks.refused_case("a combination", json.dumps(dict(CASE, materials=[heavy, *CASE["materials"][1:]], particles=[radius],
@@ -290,7 +290,7 @@ def extremes(checks):
             (("boundaries", 2, "half_angle"), (1e-46, 1.5707963)), (("boundaries", 3, "radius"), (2e-38,)), (("skin",), (2e-38,)),
             (("fill", 0, "random_v"), (1e30, 3e38))):
         for value in values:
-            ended = checks.start_case(changed(path, value), "--force")
+            ended = checks.start_case(changed(path, value), "--force", "--accept-step")
             what = f"{pointer_to(path)} = {value}: {ended.returncode}: {ended.stderr}"
             ends[ended.returncode] += 1
             if ended.returncode == 3:
@@ -323,15 +323,15 @@ def last_state(checks):
         stiff = dict(LAWS[1], normal={"law": "hooke", "k_n": 1e14})
         case = dict(CASE, integrator=integrator, particles=[one, dict(one, r=[0.5, 0, 0.01], v=[0, 0, 0])], fill=[],
                     boundaries=[kick], laws=[LAWS[0], stiff, *LAWS[2:]], end=1e-3, interval=1e-4)
-        ended = checks.start_case(json.dumps(case), "--force")
+        ended = checks.start_case(json.dumps(case), "--force", "--accept-step")
         expect(ended.returncode == 4 and "moves by more than a cell" in ended.stderr,
                f"{integrator}: {ended.returncode}: {ended.stderr}")
         failed, steps = checks.contents(), checks.summary("out")["counters"]["steps"]
         expect(15 < steps < 100 and not checks.not_finite(), f"{integrator}: {steps} steps")
-        expect(checks.start_case(json.dumps(case), "--force", "--checkpoint", "1e-9").stderr == ended.stderr and checks.contents() == failed,
+        expect(checks.start_case(json.dumps(case), "--force", "--accept-step", "--checkpoint", "1e-9").stderr == ended.stderr and checks.contents() == failed,
                f"{integrator}: checkpoints do not change the last state")
         resumed(checks, ended, integrator)
-        whole = checks.start_case(json.dumps(case), "--force", "--end", repr(steps * 1e-5))
+        whole = checks.start_case(json.dumps(case), "--force", "--accept-step", "--end", repr(steps * 1e-5))
         expect(whole.returncode == 0, f"{integrator}: {whole.stderr}")
         for name in ("particles.csv", "run.csv"):
             expect(checks.contents()[name] == failed[name], f"{integrator}: {name} is that of a run to the last state")

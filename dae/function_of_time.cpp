@@ -171,7 +171,7 @@ bool FunctionOfTime::is_resolved(double from, double to, double& pulse) const
 bool FunctionOfTime::is_near_chord(const Point& from, const Point& to, double margin, double& outside) const
 {
     constexpr int depth = 12;
-    const double leaf = std::ldexp(to.t - from.t, -depth), slope = (to.f - from.f) / (to.t - from.t);
+    const double leaf = std::ldexp(to.t - from.t, curve ? -5 : -depth), slope = (to.f - from.f) / (to.t - from.t);
     Halves left(from.t, to.t);
     for (int n = 0; !left.empty() && n < most_subdivisions; ++n) {
         const auto [a, b] = left.pop();
@@ -183,7 +183,7 @@ bool FunctionOfTime::is_near_chord(const Point& from, const Point& to, double ma
             left.push_halves(a, m, b);
             continue;
         }
-        if (off <= margin && !std::isfinite(all.width())) continue;
+        if (off <= margin && (curve || !std::isfinite(all.width()))) continue;
         outside = a;
         return false;
     }

@@ -3,6 +3,8 @@
 
 #include "dae/curves/sampled_curve.hpp"
 #include "io/arithmetic/range.hpp"
+#include "lie/check.hpp"
+#include "lie/system.hpp"
 
 #include <algorithm>
 #include <array>
@@ -106,7 +108,10 @@ FunctionOfTime::FunctionOfTime(io::Expression f) : formula(std::move(f))
             scale = std::max(scale, f_k);
 }
 
-FunctionOfTime::FunctionOfTime(std::shared_ptr<const SampledCurve> samples) : curve(std::move(samples)) {}
+FunctionOfTime::FunctionOfTime(std::shared_ptr<const SampledCurve> samples) : curve(std::move(samples))
+{
+    scale = curve->largest();
+}
 
 std::optional<double> FunctionOfTime::first_break(double from, double to) const
 {
@@ -120,15 +125,15 @@ double FunctionOfTime::value(double t) const { return formula ? formula->value(t
 
 io::RangeJet FunctionOfTime::bounds(double from, double to) const
 {
-    if (curve) return {curve->bounds(from, to), {}};
     const io::RangeJet natural = formula->bounds({from, to});
     return {tightened(*formula, from, to, natural), natural.fdot};
 }
 
 double FunctionOfTime::resolved_until(double from, double to) const
 {
-    if (curve) return to;  // the bounds of few samples do not become tight
     constexpr double shortest = 1e-12, reduction = 0.25;
+    if (curve && from >= curve->last()) return to;
+    if (curve) to = std::min(to, curve->last());
     const double smallest = shortest * (to - from);
     for (double pulse = 0; to - from > smallest && !is_resolved(from, to, pulse);)
         to = std::max(std::min(pulse, to), from + reduction * (to - from));
@@ -140,59 +145,87 @@ double FunctionOfTime::resolved_until(double from, double to) const
 bool FunctionOfTime::is_resolved(double from, double to, double& pulse) const
 {
     constexpr int quarters = 4;
-    // Of the largest value, and of the difference of the largest and the smallest of the five values
+    // Of the largest value, of the difference of the largest and the smallest of the five values, and of the
+    // values of the formula for the rounding errors of its bounds
     constexpr double negligible = 1e-8, part = 0.25, rounding = 1e-12;
-    std::array<double, quarters + 1> t{}, seen{};
-    std::array<io::RangeJet, quarters> all{};
-    double largest = curve ? curve->largest() : 0;
-    bool rises = true, falls = true;
+    std::array<Point, quarters + 1> at{};
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
     for (int k = 0; k <= quarters; ++k) {
-        t[k] = k == quarters ? to : from + (to - from) * k / quarters;
-        seen[k] = value(t[k]);
+        const double t = k == quarters ? to : from + (to - from) * k / quarters;
+        at[k] = {t, value(t)};
+        lo = std::min(lo, at[k].f), hi = std::max(hi, at[k].f);
     }
+    if (curve) {
+        const double margin = part * (hi - lo) + negligible * scale;
+        for (int k = 0; k < quarters; ++k)
+            if (!knots_are_near_chord(at[k], at[k + 1], margin, pulse)) return false;
+        return true;
+    }
+    std::array<io::RangeJet, quarters> all{};
+    double largest = 0;
+    bool rises = true, falls = true;
     for (int k = 0; k < quarters; ++k) {
-        all[k] = bounds(t[k], t[k + 1]);
+        all[k] = bounds(at[k].t, at[k + 1].t);
         rises = rises && all[k].fdot.lo >= 0, falls = falls && all[k].fdot.hi <= 0;
         if (std::isfinite(all[k].f.width()))
             largest = std::max({largest, std::abs(all[k].f.lo), std::abs(all[k].f.hi)});
     }
     if (rises || falls) return true;
-    const auto [lo, hi] = std::minmax_element(seen.begin(), seen.end());
-    const double margin = part * (*hi - *lo) + negligible * largest + rounding * scale;
+    const double margin = part * (hi - lo) + negligible * largest + rounding * scale;
     for (int k = 0; k < quarters; ++k) {
         // A function is within (b - a) (max ḟ - min ḟ)/4 of its chord.
-        if (0.25 * (t[k + 1] - t[k]) * all[k].fdot.width() <= margin) continue;
-        if (!is_near_chord({t[k], seen[k]}, {t[k + 1], seen[k + 1]}, margin, pulse)) return false;
+        if (0.25 * (at[k + 1].t - at[k].t) * all[k].fdot.width() <= margin) continue;
+        if (!is_near_chord(at[k], at[k + 1], margin, pulse)) return false;
     }
     return true;
 }
 
-/// Whether the values differ from the chord between two points by at most a margin; otherwise `outside` is a
-/// place before those that do not.
+/// Whether the values of a formula differ from the chord between two points by at most a margin; otherwise
+/// `outside` is a place before those that do not.
 bool FunctionOfTime::is_near_chord(const Point& from, const Point& to, double margin, double& outside) const
 {
     constexpr int depth = 12;
-    const double leaf = std::ldexp(to.t - from.t, curve ? -5 : -depth), slope = (to.f - from.f) / (to.t - from.t);
+    const double leaf = std::ldexp(to.t - from.t, -depth), slope = (to.f - from.f) / (to.t - from.t);
     Halves left(from.t, to.t);
     for (int n = 0; !left.empty() && n < most_subdivisions; ++n) {
         const auto [a, b] = left.pop();
         const Range all = bounds(a, b).f;
         const double at_a = from.f + slope * (a - from.t), at_b = from.f + slope * (b - from.t);
         if (all.hi <= std::min(at_a, at_b) + margin && all.lo >= std::max(at_a, at_b) - margin) continue;
-        const double m = middle(a, b), off = std::abs(value(m) - middle(at_a, at_b));
-        if (b - a > leaf && m > a && m < b && !left.is_full()) {
+        const double m = middle(a, b);
+        if (b - a > leaf && m > a && m < b) {
             left.push_halves(a, m, b);
             continue;
         }
-        if (off <= margin && (curve || !std::isfinite(all.width()))) continue;
+        if (std::abs(value(m) - middle(at_a, at_b)) <= margin && !std::isfinite(all.width())) continue;
         outside = a;
         return false;
     }
     return true;
 }
 
+/// The same for a curve, at its knots and in the middle between them
+bool FunctionOfTime::knots_are_near_chord(const Point& from, const Point& to, double margin,
+                                          double& outside) const
+{
+    const double slope = (to.f - from.f) / (to.t - from.t);
+    for (double a = from.t; a < to.t;) {
+        const double b = std::min(curve->next_knot(a), to.t);
+        for (const double t : {middle(a, b), b})
+            if (!(std::abs(value(t) - (from.f + slope * (t - from.t))) <= margin)) {
+                outside = a;
+                return false;
+            }
+        a = b;
+    }
+    return true;
+}
+
 NodeFormula::NodeFormula(io::Expression f, std::size_t time) : formula(std::move(f)), time(time)
 {
+    if (formula.variables() > most_variables)
+        lie::reject("dae::NodeFormula", "a formula must have at most three variables; their number",
+                    formula.variables());
     for (const io::Expression& part : formula.parts_in(time))
         for (io::Expression& g : part.switching_functions(io::Expression::Switches::jumps))
             jumps.push_back(std::move(g));
@@ -202,15 +235,13 @@ double NodeFormula::value(std::span<const double> variables, double start) const
 {
     const double f = formula.value(variables);
     if (jumps.empty()) return f;
-    const double t = variables[time], distance = 8 * eps * std::abs(t), before = t - distance,
+    const double t = variables[time], distance = 0.25 * lie::break_distance(t), before = t - distance,
                  after = t + distance;
     const bool jumps_here = std::any_of(jumps.begin(), jumps.end(), [&](const io::Expression& g) {
         return signs_differ(g.value(before), g.value(after)) || (distance == 0 && g.value(t) == 0);
     });
     if (!jumps_here) return f;
-    constexpr std::size_t most = 8;
-    std::array<double, most> at{};
-    if (variables.size() > most) return f;
+    std::array<double, most_variables> at{};
     std::copy(variables.begin(), variables.end(), at.begin());
     const std::span<const double> x(at.data(), variables.size());
     at[time] = t > 0 ? after : std::numeric_limits<double>::min();

@@ -39,10 +39,11 @@ private:
         double t, f;
     };
     bool is_near_chord(const Point& from, const Point& to, double margin, double& outside) const;
+    bool knots_are_near_chord(const Point& from, const Point& to, double margin, double& outside) const;
     io::RangeJet bounds(double from, double to) const;
 
     std::optional<io::Expression> formula;
-    double scale = 0;  ///< of the values of the formula, for the rounding errors of their bounds
+    double scale = 0;                       ///< of the values
     std::vector<io::Expression> switching;  ///< their zeros are the break points
     std::shared_ptr<const SampledCurve> curve;
 };
@@ -52,7 +53,8 @@ private:
 /// of the run it is the value after the jump.
 class NodeFormula {
 public:
-    /// `time` is the number of the variable t.
+    static constexpr std::size_t most_variables = 3;
+    /// `time` is the number of the variable t. Throws lie::InvalidInput for more variables.
     NodeFormula(io::Expression f, std::size_t time);
 
     /// The value for these variables; those of the numbers that jumps compare are within rounding of t

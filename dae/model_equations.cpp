@@ -23,9 +23,6 @@ constexpr double swap_threshold = 0.9;
 // vectors have left their common plane of rotation.
 constexpr double swap_tolerance = 1e-6;
 
-// The sides of a break point are this many rounding errors of the time away from it.
-constexpr double side_distance = 32 * std::numeric_limits<double>::epsilon();
-
 /// The derivatives of the loads of a force by central differences. out.x is x on entry and on return.
 void difference_loads(const Force& f, const State& x, lie::LoadVariation& out, Force::LoadDerivatives& d)
 {
@@ -338,7 +335,7 @@ Model::SmoothTime Model::smooth_until(double t, double t_end) const
     for (const TimeFunction& of : functions_of_time)
         if (const auto first = of.f->first_break(t, smooth.end); first) smooth = {*first, true};
     // Values at both sides of a break point
-    const double distance = smooth.is_break ? side_distance * std::abs(smooth.end) : 0;
+    const double distance = smooth.is_break ? lie::break_distance(smooth.end) : 0;
     for (const TimeFunction& of : functions_of_time) {
         const double end = smooth.is_break ? smooth.end - distance : smooth.end;
         if (!(end > t)) break;
@@ -354,7 +351,7 @@ Model::SmoothTime Model::smooth_until(double t, double t_end) const
 void Model::refuse_jump(const TimeFunction& of, double t) const
 {
     constexpr double rounding = 1e-9;
-    const double distance = side_distance * std::abs(t), before = of.f->value(t - distance),
+    const double distance = lie::break_distance(t), before = of.f->value(t - distance),
                  after = of.f->value(t + distance);
     if (std::abs(after - before) <= rounding * (1 + std::abs(before))) return;
     std::ostringstream what;
@@ -372,7 +369,7 @@ bool Model::velocity_jumps(double t, double t_end) const
         const Driver& driver = *row[of.driven].block->prescribed();
         for (double from = t; const auto first = of.f->first_break(from, t_end);) {
             refuse_jump(of, *first);
-            const double distance = side_distance * std::abs(*first);
+            const double distance = lie::break_distance(*first);
             const double before = driver.fdot(*first - distance), after = driver.fdot(*first + distance);
             constexpr double rounding = 1e-6;
             jumps = jumps || !(std::abs(after - before) <= rounding * (1 + std::abs(before)));

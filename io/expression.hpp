@@ -88,6 +88,8 @@ public:
 
     const std::string& text() const { return source; }
 
+    /// Number of the variables of the constructor
+    std::size_t variables() const { return arity; }
     /// Whether the value depends on variable k
     bool uses(std::size_t k) const;
     /// Names of all functions

@@ -22,6 +22,8 @@
 #include "lie/rows.hpp"
 #include "lie/state.hpp"
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 namespace hilda::lie {
@@ -140,6 +142,10 @@ public:
     /// Name of body b for messages
     virtual std::string body_name(int b) const { return "body " + std::to_string(b); }
 };
+
+/// The states on both sides of a break point of time (System::smooth_until) are this far from it [s]: some
+/// rounding errors
+inline double break_distance(double t) { return 32 * std::numeric_limits<double>::epsilon() * std::abs(t); }
 
 /// Kinetic energy plus potential energy of the conservative loads [J]
 double energy(const System& system, const State& x);

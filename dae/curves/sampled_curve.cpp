@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace hilda::dae {
@@ -86,14 +87,13 @@ io::Jet SampledCurve::jet(double time) const
     return {f(0, 0), f(0, 1) / length, f(0, 2) / (length * length)};
 }
 
-io::Range SampledCurve::bounds(double from, double to) const
+double SampledCurve::next_knot(double time) const
 {
-    const auto span = [&](double t) {
-        return Spline::Span(std::clamp((t - begin) / (end - begin), 0., 1.), degree, spline.knots());
-    };
-    const Eigen::Index low = span(from) - degree, high = span(to);
-    const auto points = spline.ctrls().segment(low, high - low + 1);
-    return io::Range::around(points.minCoeff(), points.maxCoeff());
+    const auto& knots = spline.knots();
+    const double u = (time - begin) / (end - begin);
+    const double* const next = std::upper_bound(knots.data(), knots.data() + knots.size(), u);
+    if (next == knots.data() + knots.size()) return std::numeric_limits<double>::infinity();
+    return std::max(begin + *next * (end - begin), std::nextafter(time, end + 1));
 }
 
 }  // namespace hilda::dae

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "io/arithmetic/jet.hpp"
-#include "io/arithmetic/range.hpp"
 
 #include <Eigen/Core>
 #include <unsupported/Eigen/Splines>
@@ -32,8 +31,9 @@ public:
     /// lie::NumericalFailure "motion_ended" for other times.
     io::Jet jet(double time) const;
 
-    /// Bounds of the value between two times: the spline is in the convex hull of its control points
-    io::Range bounds(double from, double to) const;
+    /// The first knot after a time [s]; infinite behind the last one. The knots are about as dense as the
+    /// samples, and the spline is a polynomial of degree 5 between them.
+    double next_knot(double time) const;
 
     double largest() const { return spline.ctrls().cwiseAbs().maxCoeff(); }  ///< bound of the magnitude
 

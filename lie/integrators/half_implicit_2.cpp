@@ -23,9 +23,6 @@
 #include "lie/steps/projection.hpp"
 #include "lie/system.hpp"
 
-#include <cmath>
-#include <limits>
-
 namespace hilda::lie {
 namespace {
 
@@ -57,7 +54,7 @@ private:
     /// velocity constraints would otherwise alternate for ever.
     void restart_after_impulse(double h)
     {
-        const double after = 64 * std::numeric_limits<double>::epsilon() * std::abs(x_n.t);
+        const double after = 2 * break_distance(x_n.t);
         if (!model.velocity_jumps(x_n.t - h + after, x_n.t + after)) return;
         const double t = x_n.t;
         K.set_shift(shift(h));

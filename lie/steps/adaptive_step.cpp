@@ -18,8 +18,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Within this part of a step from its end, a zero of a switching function is at its end.
 constexpr double at_end = 1e-9;
 constexpr int most_located = 50;  // attempts to end a step at a zero
-// The states on both sides of a break point are this many rounding errors of the time away from it.
-constexpr double break_distance = 32 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -80,7 +78,7 @@ void AdaptiveStep<Method>::start()
 /// Sets the first step from x_n at a start and behind a place where the equations are not smooth: an error
 /// estimate that begins with the step before could be blind for what follows.
 template <class Method>
-void AdaptiveStep<Method>::choose_first_step()
+void AdaptiveStep<Method>::choose_first_step(double smallest)
 {
     theta.setZero();
     set_slope(x_n, rate);
@@ -103,22 +101,22 @@ void AdaptiveStep<Method>::choose_first_step()
     } catch (const NumericalFailure&) {
         control.h = 0.01 * euler;
     }
-    if (!(control.h > 0)) control.h = euler;
+    if (!(control.h > 0)) control.h = std::max(euler, smallest);  // the square of a load may overflow
 }
 
 template <class Method>
 int AdaptiveStep<Method>::internal_step(double interval)
 {
     copy(end, x_n);
-    if (control.h == 0) choose_first_step();
+    const double smallest =
+        std::max(16 * std::numeric_limits<double>::epsilon() * std::abs(x_n.t), 1e-14 * interval);
+    if (control.h == 0) choose_first_step(smallest);
     this->begin_internal_step();
     if (!K.is_condensed() && K.pivots().body.empty()) assemble_once(x_n);
     if (K.factorizations() != factorizations) {
         pivots_before = K.pivots();
         factorizations = K.factorizations();
     }
-    const double smallest =
-        std::max(16 * std::numeric_limits<double>::epsilon() * std::abs(x_n.t), 1e-14 * interval);
     const double begun = length;
     double to_switch = infinity;  // time from x_n to the zero of a switching function
     bool again = length == 0;
@@ -130,7 +128,7 @@ int AdaptiveStep<Method>::internal_step(double interval)
         if (!(h > 0)) {  // x_n is at a break point
             pass_break(cut.at_break);
             copy(end, x_n);
-            choose_first_step();
+            choose_first_step(smallest);
             continue;
         }
         const int k = try_step(h, again, norm);
@@ -145,6 +143,7 @@ int AdaptiveStep<Method>::internal_step(double interval)
                 restore_pivots(h);
                 continue;
             }
+            this->accept_stages(h);
             if (h == to_switch) pass_switch(std::max(h, begun));
             if (cut.at_break > 0) pass_break(cut.at_break);
             length = h;
@@ -174,14 +173,13 @@ auto AdaptiveStep<Method>::next_end(double h) const -> Cut
     const double t_end = x_n.t + h;
     const System::SmoothTime smooth = model.smooth_until(x_n.t, t_end);
     if (!smooth.is_break) return {smooth.end < t_end ? smooth.end - x_n.t : h};
-    const double distance = break_distance * std::abs(smooth.end);
-    return {std::max(0., smooth.end - distance - x_n.t), smooth.end};
+    return {std::max(0., smooth.end - break_distance(smooth.end) - x_n.t), smooth.end};
 }
 
 template <class Method>
 void AdaptiveStep<Method>::pass_break(double t)
 {
-    end.t = t + break_distance * std::abs(t);
+    end.t = t + break_distance(t);
     assemble_once(end);
     this->finish(end, scheme_name());
 }
@@ -232,7 +230,6 @@ int AdaptiveStep<Method>::try_step(double h, bool again, double& norm)
         const int k = this->attempt(end, h, rtol, atol, again, tolerance, norm);
         if (!(norm <= 1)) return 0;
         model.accepted(x_n, end);
-        this->accept_stages(h);
         return this->done(step, k);
     } catch (const NumericalFailure& failure) {
         norm = infinity;

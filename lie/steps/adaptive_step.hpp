@@ -60,7 +60,7 @@ private:
 
     void set_tolerance_limits();
     void start();
-    void choose_first_step();
+    void choose_first_step(double smallest);
     int internal_step(double interval);
     /// One attempt from x_n to `end`. Sets the norm of its error estimate; infinite if it failed.
     int try_step(double h, bool again, double& norm);

@@ -24,8 +24,6 @@ namespace hilda::reference {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// The states on both sides of a break point are this many rounding errors of the time away from it.
-constexpr double break_distance = 32 * std::numeric_limits<double>::epsilon();
 
 // Limits of the internal steps between two nodes. IDA has failed after max_steps, and also if check_interval
 // steps cover less than the fraction min_progress of the distance between the nodes.
@@ -330,9 +328,9 @@ private:
         const double limit = std::min({next, longest_step, lie::largest_counted_turn / std::sqrt(fastest)});
         const lie::System::SmoothTime smooth = system.smooth_until(t, t + limit);
         at_break = smooth.is_break ? smooth.end : 0;
-        const double end = smooth.end - break_distance * std::abs(at_break);
+        const double end = smooth.end - lie::break_distance(at_break);
         // IDA may be beyond t by rounding errors.
-        is_at_break = at_break > 0 && !(end - t > break_distance * std::abs(t));
+        is_at_break = at_break > 0 && !(end - t > lie::break_distance(t));
         if (end < t + next && !is_at_break) check(IDASetStopTime(ida_memory.get(), end), "IDASetStopTime");
     }
 
@@ -340,7 +338,7 @@ private:
     void pass_break()
     {
         equations.read(t, map(y.get()), internal);
-        internal.t = at_break + break_distance * std::abs(at_break);
+        internal.t = at_break + lie::break_distance(at_break);
         at_break = 0;
         to_restart = true;
     }
@@ -349,7 +347,6 @@ private:
     /// is one.
     bool return_to_switch()
     {
-        equations.read(t, map(y.get()), after);
         const double from = before.t, h = t - from;
         const auto path = [&](double s, lie::State& x) {
             check(IDAGetDky(ida_memory.get(), from + s * h, 0, at_node.get()), "IDAGetDky");
@@ -389,7 +386,6 @@ private:
         has_stepped = true;
         if (follows) {
             equations.read(t, map(y.get()), after = before);
-            after.t = t;
             if (counts_turns && repeat_shorter()) return;
             if (switches.is_needed() && return_to_switch()) return;
             last_length = t - before.t;

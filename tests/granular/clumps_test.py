@@ -25,7 +25,7 @@ BED = {
     "laws": [{"between": ["glass", "glass"], "restitution": 0.6, "mu": 0.4, "tangential": {"law": "mindlin"},
               "rolling": {"law": "epsd", "mu_r": 0.05, "eta_r": 0.3}},
              {"between": ["glass", "steel"], "restitution": 0.6, "mu": 0.3, "tangential": {"law": "mindlin"}, "lever": "contact"},
-             {"between": ["steel", "steel"], "restitution": 0.6, "mu": 0.3}],
+             {"between": ["steel", "steel"], "restitution": 0.6}],
     "boundaries": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "r": [0, 0, "1e-4*sin(2*pi*200*t)"], "material": "steel"},
                    {"name": "back", "type": "plane", "normal": [1, 0, 0], "material": "glass"},
                    {"name": "lid", "type": "plane", "normal": [0, 0, -1], "r": [0, 0, 0.058], "mass": 0.002, "material": "steel"}]}

@@ -254,7 +254,7 @@ def errors(runs):
     refused("/stages/0/until", "one of the keys kinetic_energy and share is required", dict(one, until={}))
     refused("/stages/0/set", "the stability limit of the step is .* with these laws, the step is 5e-06; --accept-step accepts it",
             {"name": "hard", "set": {"/laws/0/normal": {"law": "hertz"}, "/laws/1/normal/k_n": 1e9}},
-            laws=[CASE["laws"][0], {"between": ["glass", "steel"], "mu": 0.3, "normal": {"law": "hooke", "k_n": 1e3, "gamma_n": 10}}])
+            laws=[CASE["laws"][0], {"between": ["glass", "steel"], "normal": {"law": "hooke", "k_n": 1e3, "gamma_n": 10}}])
     tables = "the name of a group must not be empty or contain commas, quotes and control characters, because it is in tables, got "
     refused("/stages/1/groups", tables + '"a,b"', one, {"name": "two", "groups": {"a,b": ["bed"]}})
     refused("/stages/1/groups", "must be an object, got 3", one, {"name": "two", "groups": 3})

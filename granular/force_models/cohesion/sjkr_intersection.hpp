@@ -16,8 +16,7 @@ struct SjkrIntersection {
     static constexpr const char* name = "sjkr-intersection";
     static constexpr const char* description =
         "Simplified Johnson-Kendall-Roberts law with the area of the intersection circle of the two spheres, "
-        "as "
-        "the law sjkr of LIGGGHTS: F_c = k A, A = 2 pi R* delta for small overlaps.";
+        "as the law sjkr of LIGGGHTS: F_c = k A, A = 2 pi R* delta for small overlaps.";
     static constexpr const char* example = R"("k": 1000)";
 
     float k = 0;  ///< [J/m³]

@@ -12,6 +12,7 @@ using namespace hilda::tests;
 using granular::Boundary;
 using granular::ContactPoint;
 using granular::ContactRecord;
+using granular::ContactVelocities;
 using granular::DoubleWorld;
 using granular::Lever;
 

@@ -106,7 +106,7 @@ void read_options(ObjectReader& o, Case& out, WorldOptions& world)
         o.vec3("gravity", {"Acceleration of gravity [m/s^2], in the global frame.", "[0, 0, -1.62]"},
                Vec3{0, 0, -9.81});
     out.h = world.h = o.positive("step", {"Time step [s]. A step above the stability limit of the contacts "
-                                          "is rejected, unless --force is given.",
+                                          "is rejected, unless --accept-step is given.",
                                           "5e-6"});
     out.end = o.positive("end", {"End time of the run [s]. At most 9e15 steps.", "0.2"});
     if (constexpr double max_steps = 9e15; out.end / out.h > max_steps)

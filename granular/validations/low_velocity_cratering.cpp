@@ -435,7 +435,7 @@ ValidationResult run(const ValidationOptions& options)
 const bool registered_low_velocity_cratering = io::Registry<Validation>::add(
     {.name = "low-velocity-cratering",
      .description = "depth, duration and peak acceleration of the impact of a sphere at low velocity "
-                    "(Figs. 7.15-7.18)",
+                    "(Figs. 7.15, 7.16, 7.18)",
      .run = run,
      .independent_parts = true});
 

@@ -462,7 +462,7 @@ ValidationResult run(const ValidationOptions& options)
 
 const bool registered_wheel = io::Registry<Validation>::add(
     {.name = "wheel",
-     .description = "pull, torque and sinkage of a wheel on a bed of grains over the slip (Figs. 7.21-7.23)",
+     .description = "pull, torque and sinkage of a wheel on a bed of grains over the slip (Figs. 7.21, 7.23)",
      .run = run,
      .independent_parts = true});
 

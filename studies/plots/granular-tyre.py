@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Single-wheel rig with a tyre on a bed of grains, in co-simulation.                   Fang (2022), Figs. 7.20-7.25
+"""Single-wheel rig with a tyre on a bed of grains, in co-simulation.                   Fang (2022), Figs. 7.20, 7.25
 
     granular-tyre.py DIR     reads DIR/study.csv, DIR/motion.csv and DIR/grains.csv, writes DIR/granular-tyre.png
 """

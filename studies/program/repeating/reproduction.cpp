@@ -108,15 +108,14 @@ const std::vector<Reproduction>& reproductions()
         {"granular-cratering", 7, "Fig. 7.14", "Crater of a ball in a bed of grains",
          "Depth of the crater over the scaled height of fall.", "granular-cratering --check", "",
          "--grid full", "grains of 2 mm radius instead of 1 mm, and fewer balls"},
-        {"granular-low-velocity-cratering", 7, "Figs. 7.15, 7.16, 7.17, 7.18",
-         "Impact of a sphere at low velocity",
+        {"granular-low-velocity-cratering", 7, "Figs. 7.15, 7.16, 7.18", "Impact of a sphere at low velocity",
          "Depth, duration and peak acceleration over the speed, the rolling friction and the gravity.",
          "granular-low-velocity-cratering --check", "", "--grid full",
          "two speeds and rolling frictions, and one impact in reduced gravity"},
         {"granular-drum", 7, "Fig. 7.19", "Grains in a rotating drum",
          "Flow of the grains, coloured by their speed, over the Froude number.", "granular-drum --check", "",
          "--grid full", "grains of 1 mm radius instead of 0.5 mm, and fewer speeds"},
-        {"granular-wheel", 7, "Figs. 7.21, 7.22, 7.23, 7.25", "Single wheel on grains",
+        {"granular-wheel", 7, "Figs. 7.21, 7.23, 7.25", "Single wheel on grains",
          "Pull, driving torque and sinkage over the slip, in plane strain; in the full grid also of a "
          "cylinder "
          "with end faces and of a tyre.",

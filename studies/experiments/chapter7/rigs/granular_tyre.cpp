@@ -403,7 +403,7 @@ void run_study(StudyContext& s)
 
 const bool registered_granular_tyre = io::Registry<Study>::add(
     {.name = "granular-tyre",
-     .answers = "single-wheel rig with a tyre, imposed and free slip, in co-simulation (Figs. 7.20-7.25)",
+     .answers = "single-wheel rig with a tyre, imposed and free slip, in co-simulation (Figs. 7.20, 7.25)",
      .options = {"--check", "--grid", "--shard"},
      .files = {"motion.csv", "grains.csv", "granular-tyre.png"},
      .run = run_study});

@@ -123,45 +123,4 @@ void World::check_loads(const Totals& totals) const
                  shown(Vec3{totals.stress[0], totals.stress[4], totals.stress[8]}));
 }
 
-namespace {
-
-/// The force at an overlap of a hundredth of the radius. v: rate of the overlap and tangential velocity [m/s]
-template <class R>
-ContactForce<R> sample_force(const PairLaw& law, double radius, double mass, bool at_boundary, double v,
-                             double h)
-{
-    const auto single = [](double x) { return static_cast<R>(x); };
-    ContactPoint<R> contact{};
-    contact.delta = single(0.01 * radius), contact.h = single(h);
-    contact.R_i = single(radius), contact.R_j = single(at_boundary ? 0 : radius);
-    contact.R_eff = single(at_boundary ? radius : radius / 2);
-    contact.m_eff = single(at_boundary ? mass : mass / 2);
-    contact.n = {R(0), R(0), R(1)}, contact.v_n = single(v), contact.v_t = {single(v), R(0), R(0)};
-    History<R> none{};
-    return evaluate(law, contact, none, law.resists_rotation());
-}
-
-}  // namespace
-
-bool detail::has_single_forces(const PairLaw& law, double radius, double mass, double h)
-{
-    constexpr double largest_error = 0.01;
-    for (const bool at_boundary : {false, true}) {
-        // about the speed of a collision with this overlap
-        const double elastic = std::abs(sample_force<double>(law, radius, mass, at_boundary, 0, h).F.z),
-                     v = std::sqrt(elastic * 0.01 * radius / mass);
-        const ContactForce<double> exact = sample_force<double>(law, radius, mass, at_boundary, v, h);
-        const ContactForce<float> rounded = sample_force<float>(law, radius, mass, at_boundary, v, h);
-        const auto agree = [&](double a, float b, double scale) {
-            // A force that is itself out of range is found at the contact that has it.
-            const bool is_out = std::abs(a) > double(std::numeric_limits<float>::max());
-            return is_out || std::abs(a - double(b)) <= largest_error * scale;
-        };
-        if (!agree(exact.F.z, rounded.F.z, std::abs(exact.F.z) + elastic) ||
-            !agree(exact.F_t.x, rounded.F_t.x, std::abs(exact.F_t.x)))
-            return false;
-    }
-    return true;
-}
-
 }  // namespace hilda::granular

@@ -15,7 +15,7 @@ namespace hilda::lie {
 
 namespace {
 
-int sign_of(double g) { return std::isfinite(g) ? (g > 0) - (g < 0) : EventSearch::unknown; }
+int sign_of(double g) { return std::isnan(g) ? EventSearch::unknown : (g > 0) - (g < 0); }
 
 /// Whether a change between two signs is an event of this direction. A zero at a node belongs to the step
 /// that ends there.
@@ -24,6 +24,13 @@ bool counts(Event::Direction direction, int before, int now)
     if (before == EventSearch::unknown || now == EventSearch::unknown || before == 0 || now == before)
         return false;
     return direction == Event::both || (direction == Event::rising) == (before < 0);
+}
+
+[[noreturn]] void refuse(const Event& event, double t)
+{
+    std::ostringstream what;
+    what << "the formula of the event '" << event.name << "' is not a number at t = " << t << " s";
+    throw NumericalFailure("event_not_finite", what.str());
 }
 
 /// Sets positions and velocities to those at this share of the time from `from` to `to`, over which they
@@ -48,6 +55,7 @@ EventSearch::EventSearch(std::vector<Event> events, Make of, Values values)
     : all(std::move(events)), make(std::move(of)), values(std::move(values))
 {
     saved.sign.assign(all.size(), unknown);
+    saved.undefined.assign(all.size(), std::numeric_limits<double>::quiet_NaN());
     g.assign(all.size(), std::numeric_limits<double>::quiet_NaN());
     next_g = g;
 }
@@ -64,6 +72,7 @@ bool EventSearch::node(const State& to, const Report& report)
         const int sign = sign_of(now);
         if (h > 0 && counts(all[k].direction, saved.sign[k], sign)) {
             if (std::isnan(g[k])) g[k] = all[k].value(saved.node);  // of a resumed run
+            if (std::isnan(g[k])) refuse(all[k], saved.node.t);
             zeros.push_back({sign == 0 ? h : locate(all[k], g[k], now, h), k, saved.sign[k] < 0});
         }
         // A function that is zero at a node passes through zero there or touches it: one event, whichever
@@ -80,6 +89,8 @@ bool EventSearch::node(const State& to, const Report& report)
     // An exception before this line, of a force or of the formula of an event, leaves the search at its node.
     saved.sign.swap(next_sign);
     g.swap(next_g);
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (std::isnan(g[k]) && std::isnan(saved.undefined[k])) saved.undefined[k] = to.t;
     for (std::size_t k = 0; k < states.size(); ++k) report({zeros[k].event, zeros[k].rises, states[k]});
     if (stop < zeros.size()) return true;
     saved.node = to;
@@ -119,9 +130,7 @@ double EventSearch::locate(const Event& event, double g_begin, double g_end, dou
         });
     } catch (const NumericalFailure& failure) {
         if (failure.status != "event_not_finite") throw;
-        std::ostringstream what;
-        what << "the formula of the event '" << event.name << "' is not a number at t = " << x.t << " s";
-        throw NumericalFailure(failure.status, what.str());
+        refuse(event, x.t);
     }
     return bracket.b;
 }

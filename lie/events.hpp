@@ -34,7 +34,8 @@ struct EventFound {
 /// Finds the events of a run from node to node: a change of the sign of g between two nodes, and its time by
 /// partial steps from the first of them, to the last digits of t. Two zeros of one function between two nodes
 /// are not seen. A function that is zero at a node has an event there, whether it changes its sign or touches
-/// zero; not at the first node.
+/// zero; not at the first node. A function that is not a number at a node and has changed its sign at the
+/// next one throws NumericalFailure "event_not_finite".
 ///
 /// A partial step starts without the history of a multi-step scheme; the state of an event has the local
 /// accuracy of one step. With adaptive steps it is that of an output row at this time.
@@ -65,6 +66,8 @@ public:
     struct Saved {
         State node;             ///< the last one; without bodies before the first node
         std::vector<int> sign;  ///< of each g at that node: -1, 0, 1, or unknown
+        /// Time of the first node at which each g was not a number [s]; NaN if there was none
+        std::vector<double> undefined;
     };
     static constexpr int unknown = 2;
     Saved saved;

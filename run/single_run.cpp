@@ -208,6 +208,7 @@ void SingleRun::end()
     if (simulation->events() == nullptr) return;
     if (const std::string fault = simulation->events()->fault(); !fault.empty())
         throw io::NumericalFailure("event_not_finite", fault);
+    for (const std::string& text : simulation->events()->warnings()) warn(text);
 }
 
 void SingleRun::failed(const io::NumericalFailure& failure)

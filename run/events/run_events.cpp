@@ -7,7 +7,10 @@
 #include "lie/schemes.hpp"
 #include "run/recording/simulation_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::run {
 
@@ -91,7 +94,9 @@ void RunEvents::transfer(io::Archive& a)
 {
     transfer_state(a, search.saved.node);
     a.list(search.saved.sign);
-    a.check(search.saved.sign.size() == counted.size(), "wrong number of events");
+    a.list(search.saved.undefined);
+    a.check(search.saved.sign.size() == counted.size() && search.saved.undefined.size() == counted.size(),
+            "wrong number of events");
     for (EventCount& event : counted) a.value(event.count), a.value(event.last);
     formulas.transfer(a);
     table->transfer(a);
@@ -120,6 +125,18 @@ std::string RunEvents::fault() const
             return description.events[k].value->place + ": the formula of the event '" + counted[k].name +
                    "' is not finite at any node of the run";
     return {};
+}
+
+std::vector<std::string> RunEvents::warnings() const
+{
+    std::vector<std::string> all;
+    for (size_t k = 0; k < counted.size(); ++k)
+        if (!std::isnan(search.saved.undefined[k]))
+            all.push_back(
+                fmt::format("{}: the formula of the event '{}' is not a number at t = {:.6g} s; an event "
+                            "where it is not is not found",
+                            description.events[k].value->place, counted[k].name, search.saved.undefined[k]));
+    return all;
 }
 
 }  // namespace hilda::run

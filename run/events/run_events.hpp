@@ -65,6 +65,8 @@ public:
     const std::vector<EventCount>& counts() const { return counted; }
     /// Place and fault of an event whose formula was not finite at any node; empty if there is none
     std::string fault() const;
+    /// One for each event whose formula was not a number at some nodes
+    std::vector<std::string> warnings() const;
 
 private:
     std::vector<lie::Event> functions();

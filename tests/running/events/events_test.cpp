@@ -187,6 +187,12 @@ TEST_CASE("events that cannot be found are refused", "[run][events]")
             {"--integrator", "ida-rp-index1"});
     refused(R"({"name": "a", "value": "ball.rz"})", 2, "--error is for models without events", {"--error"});
     write(in / "ball.json", ball(R"-({"name": "a", "value": "sqrt(-1 - ball.rz^2)"})-"));
+    // not a number at the start, and later
+    write(in / "ball.json", ball(R"-({"name": "a", "value": "sqrt(0.9 - ball.rz) + 1"})-"));
+    const Ended some = call(in, {"run", "ball.json", "--force", "--output", "o"});
+    CHECK(some.code == 0);
+    CHECK_THAT(some.err, Contains("the formula of the event 'a' is not a number at t = 0 s"));
+    write(in / "ball.json", ball(R"-({"name": "a", "value": "sqrt(-1 - ball.rz^2)"})-"));
     const Ended never = call(in, {"run", "ball.json", "--force", "--output", "o"});
     CHECK(never.code == 4);
     CHECK_THAT(never.err,

@@ -13,6 +13,8 @@ namespace hilda::run {
 
 namespace {
 
+constexpr double rounding = 1e-9;  // relative, of times
+
 /// Four digits, rounded down, so that the printed step satisfies the limit
 std::string rounded_down(double positive)
 {
@@ -41,8 +43,13 @@ lie::TimeGrid time_grid(const lie::Scheme& scheme, double end, std::optional<dou
 {
     const double spacing = interval.value_or(end / 1000);
     try {
-        if (scheme.adaptive)
-            return lie::TimeGrid::over(end, interval || spacing > 0 ? spacing : default_step);
+        if (scheme.adaptive) {
+            // The rows divide the time up to the end: the run ends there.
+            lie::TimeGrid grid = lie::TimeGrid::over(end, interval || spacing > 0 ? spacing : default_step);
+            if (grid.steps > 0 && static_cast<double>(grid.steps) * grid.h > end * (1 + rounding))
+                grid.h = end / static_cast<double>(grid.steps);
+            return grid;
+        }
         return lie::TimeGrid::over(end, step.value_or(default_step), spacing);
     } catch (const lie::InvalidInput& error) {
         throw io::UsageError(error.what());
@@ -55,10 +62,14 @@ std::vector<std::string> grid_warnings(const lie::TimeGrid& grid, double end, do
     std::vector<std::string> warnings;
     const double reached = static_cast<double>(grid.steps) * grid.h,
                  spacing = static_cast<double>(grid.interval) * grid.h;
-    if (reached > end * (1 + 1e-9))
-        warnings.push_back(fmt::format("the end {} s is not a multiple of {}: the run ends at {:.12g} s", end,
-                                       scheme.adaptive ? "--interval" : "the step", reached));
-    if (interval > 0 && spacing > interval * (1 + 1e-9))
+    if (reached > end * (1 + rounding))
+        warnings.push_back(fmt::format(
+            "the end {} s is not a multiple of the step: the run ends at {:.12g} s", end, reached));
+    if (scheme.adaptive && interval > 0 && spacing < interval * (1 - rounding))
+        warnings.push_back(
+            fmt::format("the end {} s is not a multiple of --interval {}: rows are {:.12g} s apart", end,
+                        interval, spacing));
+    if (interval > 0 && spacing > interval * (1 + rounding))
         warnings.push_back(fmt::format(
             "--interval {} is not a multiple of the step: rows are {:.12g} s apart", interval, spacing));
     return warnings;

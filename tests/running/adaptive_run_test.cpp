@@ -144,6 +144,24 @@ TEST_CASE("a scheme with both forms has adaptive steps without --step", "[run][r
     }
 }
 
+TEST_CASE("an adaptive run ends at its end", "[run][run]")
+{
+    const Scratch in;
+    for (const std::string scheme : {"rA-dop853", "rA-radau-5", "ida-rp"})
+        for (const auto& [interval, rows] :
+             {std::pair{"0.033", 5}, std::pair{"0.7", 2}, std::pair{"0.025", 5}}) {
+            CAPTURE(scheme, interval);
+            const Ended run = call(in, {"run", "double_pendulum", "--integrator", scheme, "--end", "0.1",
+                                        "--interval", interval, "--force", "--output", "o"});
+            CHECK(run.code == 0);
+            CHECK((run.err.find("the end 0.1 s is not a multiple of --interval") != std::string::npos) ==
+                  (std::string(interval) != "0.025"));
+            const auto table = csv(in / "o/trajectory.csv");
+            CHECK(static_cast<int>(table.size()) == rows);
+            CHECK(number(table.back(), "t") == Approx(0.1).epsilon(1e-14));
+        }
+}
+
 TEST_CASE("an adaptive run in two parts has the bytes of one run", "[run][run][resume]")
 {
     const Scratch in;

@@ -88,6 +88,28 @@ public:
     /// Writes the springs and dampers of the force in the state x, at most max_spring_rows(), and returns
     /// their number. The function must not allocate memory.
     virtual int spring_rows(const State& /*x*/, SpringRow* /*out*/) const { return 0; }
+    /// A spring of friction that can hold the bodies of the force at rest, with one row, or with two rows and
+    /// a common stiffness and bound. The force f of a row k exerts the loads -f row[k]. See
+    /// dae/start/static_friction.hpp.
+    struct StaticSpring {
+        std::array<SpringRow, 2> row;
+        int rows = 0;
+        double bound = 0;          ///< of |f| while the bodies stick [N, N m]
+        double bound_of_slip = 0;  ///< of |f| while they slip
+        /// Its name for the warning if it cannot hold the bodies; nullptr: no warning
+        const char* name = nullptr;
+    };
+    /// Largest number of such springs
+    virtual int max_static_springs() const { return 0; }
+    /// Writes the springs in the state x, at most max_static_springs(), and returns their number.
+    virtual int static_springs(const State& /*x*/, StaticSpring* /*out*/) const { return 0; }
+    /// The force of a spring at a start
+    struct StaticForce {
+        Eigen::Vector2d f = Eigen::Vector2d::Zero();
+        bool slips = false;
+    };
+    /// Sets the deflections in x to those of the forces of static_springs().
+    virtual void set_static_forces(State& /*x*/, const StaticForce* /*forces*/) const {}
     /// Whether the spring rows describe the force in every state, so that `implicit` may be set. The bodies
     /// of the rows are those of bodies().
     virtual bool may_be_implicit() const { return false; }
@@ -123,6 +145,8 @@ public:
     /// Whether the force cannot supply energy: the work that it does is at most the decrease of
     /// potential_energy() + internal_energy()
     virtual bool is_passive() const { return false; }
+    /// Whether the force may dissipate energy. If none of a passive model does, its energy is constant.
+    virtual bool is_dissipative() const { return true; }
     /// Energy of springs whose deflections are internal states, such as those of friction [J]
     virtual double internal_energy(const State& /*x*/) const { return 0; }
 

@@ -126,6 +126,11 @@ void Bushing::add_translations(const State& x, LoadDerivatives& out) const
     }
 }
 
+bool Bushing::is_dissipative() const
+{
+    return !(coefficients.damping.isZero(0) && coefficients.rotational_damping.isZero(0));
+}
+
 namespace {
 
 /// J_r(ψ)⁻¹ = I + ψ̃/2 + c(|ψ|) ψ̃²: c(x) = (1 - x/2 cot(x/2))/x² and c'(x)/x

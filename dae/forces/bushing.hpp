@@ -33,6 +33,7 @@ public:
     double potential_energy(const State& x) const override;
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return true; }
+    bool is_dissipative() const override;
     /// The three translations in the frame of body i, then the three components of psi
     int max_spring_rows() const override { return 6; }
     int spring_rows(const State& x, SpringRow* out) const override;

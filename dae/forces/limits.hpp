@@ -60,6 +60,7 @@ public:
     void add(const State& x, lie::Loads& out) const override;
     double potential_energy(const State& x) const override;
     bool is_passive() const override { return true; }
+    bool is_dissipative() const override { return stop.damping != 0; }
     int max_spring_rows() const override { return 1; }
     int spring_rows(const State& x, SpringRow* out) const override;
     int switches() const override { return Stop::switches; }
@@ -93,6 +94,7 @@ public:
     double torque(double theta, double thetadot) const override { return stop.force(theta, thetadot); }
     double potential(double theta) const override { return stop.potential(theta); }
     bool is_passive() const override { return true; }
+    bool is_dissipative() const override { return stop.damping != 0; }
     std::pair<double, double> coefficients() const override { return {stop.stiffness, 0}; }
     std::pair<double, double> torque_derivatives(double theta, double thetadot) const override
     {

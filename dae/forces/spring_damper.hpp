@@ -52,6 +52,7 @@ public:
     }
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0 && !law; }
+    bool is_dissipative() const override { return damping != 0 || law; }
 
     int switches() const override { return static_cast<int>(switching_functions.size()); }
     void switching(const State& x, double* out) const override;

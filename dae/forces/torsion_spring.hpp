@@ -35,6 +35,7 @@ public:
     }
     bool may_be_implicit() const override { return true; }
     bool is_passive() const override { return damping >= 0; }
+    bool is_dissipative() const override { return damping != 0; }
 };
 
 }  // namespace hilda::dae

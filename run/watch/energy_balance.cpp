@@ -42,8 +42,12 @@ EnergyBalance::EnergyBalance(const dae::Model& model, const lie::State& x, doubl
 {
     for (const auto& force : model.forces()) {
         if (!force->is_passive()) not_passive.push_back(force.get());
+        dissipates = dissipates || force->is_dissipative();
         if (force->internal_states() > 0) with_internal_energy.push_back(force.get());
     }
+    dissipates = dissipates || !pairs.empty() ||
+                 std::any_of(model.general_constraints().begin(), model.general_constraints().end(),
+                             [](const auto& c) { return c->may_be_inactive(); });
     moves_early = moves_with_time(model, x, nu);
     for (const double m : model.mass().m) weight += m * std::max(1., model.gravity.norm());
 }
@@ -111,9 +115,14 @@ void EnergyBalance::evaluate(const lie::State& x, long n)
     record.step_error = std::max(record.step_error, B);
     if (record.evaluations++ == 0) {
         record.start = E;
-        record.lowest = without_work;
+        record.lowest = record.highest = without_work;
     }
     record.lowest = std::min(record.lowest, without_work);
+    record.highest = std::max(record.highest, without_work);
+    if (const double loss = record.highest - without_work; n >= first_node && loss > record.loss) {
+        record.loss = loss;
+        record.loss_t = x.t;
+    }
     if (const double rise = without_work - record.lowest; n >= first_node && rise > record.rise) {
         record.rise = rise;
         record.rise_t = x.t;

@@ -11,7 +11,8 @@
 /// State::applied_loads are not part of W: a run with them is not passive, and E - W has no finding.
 ///
 /// D, the energy dissipated, never decreases in the exact solution: E - W never rises. The rise above its
-/// lowest value so far is therefore an error of the integration, or of the model.
+/// lowest value so far is therefore an error of the integration, or of the model. So is its fall if nothing
+/// in the model dissipates energy.
 ///
 /// The error that a scheme of second order may have without an instability is estimated by the kinetic energy
 /// of the velocity change of one step, with the acceleration v̇ of the node:
@@ -40,6 +41,8 @@ struct EnergyRecord {
     double start = 0, last = 0;   ///< E at the first and the last node [J]
     double lowest = 0;            ///< smallest E - W [J]
     double rise = 0, rise_t = 0;  ///< largest rise of E - W above its lowest value [J], and its time [s]
+    double highest = 0;           ///< largest E - W [J]
+    double loss = 0, loss_t = 0;  ///< largest fall of E - W below its highest value [J], and its time [s]
     double step_error = 0;        ///< largest B [J]
     double potential_start = 0, potential = 0;  ///< Σ V_f of forces that are not passive [J]
     double t = 0;                               ///< of the last node [s]
@@ -71,6 +74,9 @@ public:
     {
         return not_passive.empty() && record.with_applied_loads == 0 && !has_drivers();
     }
+    /// It is passive, and nothing in it dissipates energy: no damper, friction, impact or unknown force. D
+    /// = 0
+    bool is_conservative() const { return is_passive() && !dissipates; }
     /// Rounding errors and errors of the constraints in E [J]
     double floor() const;
     /// Largest rise of E - W that is not above `part` times the largest kinetic energy plus rounding errors
@@ -88,6 +94,7 @@ private:
     const dae::Model& model;
     const double h;
     std::vector<const dae::Force*> not_passive, with_internal_energy;
+    bool dissipates = false;
     bool moves_early = false;  ///< ν ≠ 0 within about 2 s of the start
     double weight = 0;         ///< Σ m max(1 m/s², |g|) [N]
     lie::Loads loads;

@@ -104,9 +104,17 @@ bool Watch::energy_created() const
     return r.rise > energy.limit(limits.energy) + std::min(r.step_error, limits.step_error * r.kinetic_most);
 }
 
+bool Watch::energy_lost() const
+{
+    const EnergyRecord& r = energy.record;
+    return energy.is_conservative() &&
+           r.loss > energy.limit(limits.loss) + std::min(r.step_error, limits.step_error * r.kinetic_most);
+}
+
 void Watch::check_energy() const
 {
     if (action == Action::record) return;
+    if (action == Action::strict && energy_lost()) stop("energy_lost", loss_finding().text);
     if (energy_created()) stop("energy_created", energy_finding().text);
     if (action == Action::strict && energy_rises()) stop("energy_rises", energy_finding().text);
 }
@@ -167,6 +175,17 @@ Finding Watch::energy_finding() const
     return {"energy_rises", text + (scheme.adaptive ? "; reduce --rtol" : "; reduce the step")};
 }
 
+Finding Watch::loss_finding() const
+{
+    const EnergyRecord& r = energy.record;
+    return {"energy_lost",
+            fmt::format(
+                "the energy falls by {:.3g} J until t = {:.6g} s, {} of the largest kinetic energy {:.3g} "
+                "J, and nothing in the model dissipates energy; {}",
+                r.loss, r.loss_t, percent(r.loss / r.kinetic_most), r.kinetic_most,
+                scheme.adaptive ? "reduce --rtol" : "reduce the step, or use an integrator of higher order")};
+}
+
 std::vector<Finding> Watch::findings() const
 {
     std::vector<Finding> all;
@@ -175,6 +194,7 @@ std::vector<Finding> Watch::findings() const
     if (values.overlap.value > limits.overlap) all.push_back(overlap_finding());
     if (values.condition < limits.condition) all.push_back(condition_finding());
     if (energy_rises()) all.push_back(energy_finding());
+    if (energy_lost()) all.push_back(loss_finding());
     return all;
 }
 
@@ -203,6 +223,9 @@ io::Json Watch::json() const
               {"dissipated", r.dissipated()},
               {"rise", r.rise},
               {"rise_t", r.rise_t},
+              {"conservative", energy.is_conservative()},
+              {"loss", r.loss},
+              {"loss_t", r.loss_t},
               {"step_error", r.step_error}}}};
 }
 

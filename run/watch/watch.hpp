@@ -70,6 +70,9 @@ public:
         /// exceeds this plus the error estimate of the step (EnergyBalance), of which at most `step_error`
         /// counts.
         double energy = 0.01, step_error = 0.25;
+        /// Loss of energy of a model without dissipation, relative to the largest kinetic energy: warning.
+        /// The error estimate of the step is added as above.
+        double loss = 0.1;
     };
     /// Consequences of a finding
     enum class Action {
@@ -83,7 +86,7 @@ public:
           const lie::Scheme& scheme, const lie::TimeGrid& grid, Action action, bool ignore_stability = false);
 
     /// lie::NumericalFailure with the status "unstable_step", "overlap_too_large" or "energy_created"; with
-    /// Action::strict also "large_turn", "large_overlap", "ill_conditioned" or "energy_rises"
+    /// Action::strict also "large_turn", "large_overlap", "ill_conditioned", "energy_rises" or "energy_lost"
     void accepted(const lie::State& x, long n, int iterations) override;
 
     /// Warnings, at the end of a run
@@ -99,6 +102,9 @@ private:
     void check_stability(int force, const lie::State& x);
     void check_contacts(const lie::State& x, bool all);
     void check_energy() const;
+    /// Whether a model without dissipation loses energy
+    bool energy_lost() const;
+    Finding loss_finding() const;
     /// Whether the energy of a passive model rises
     bool energy_rises() const;
     /// Whether the rise exceeds also the error estimate, in a scheme without drift

@@ -115,6 +115,49 @@ TEST_CASE("a passive model whose energy rises ends with energy_created", "[run][
     CHECK(end_of_run("rA-half-1", Watch::Action::strict) == "energy_rises");
 }
 
+TEST_CASE("a model that loses energy without dissipation has a finding", "[run][watch]")
+{
+    // Pushes a body against its velocity, and claims not to dissipate
+    class Braking final : public dae::Force {
+    public:
+        explicit Braking(double c) : c(c) {}
+        void add(const lie::State& x, lie::Loads& out) const override { out.F[0] -= c * x.body[0].rdot; }
+        bool is_passive() const override { return true; }
+        bool is_dissipative() const override { return false; }
+        int last_body() const override { return 0; }
+
+    private:
+        const double c;
+    };
+    const auto findings = [](double c, Watch::Action action) {
+        dae::Model model;
+        model.gravity.setZero();
+        model.add({.name = "b", .m = 1, .J_bar = lie::Mat3::Identity()});
+        model.load(Braking(c));
+        lie::State x;
+        x.body.resize(1);
+        x.body[0].rdot = {1, 0, 0};
+        dae::start(model, x);
+        const lie::TimeGrid grid = lie::TimeGrid::over(1, 1e-3);
+        const lie::Scheme& scheme = lie::scheme("rA-half-1-momentum");
+        const auto integrator = scheme.make(model, {});
+        Watch watch(model, x, *integrator, scheme, grid, action);
+        lie::Observer* observers[] = {&watch};
+        try {
+            lie::march(x, *integrator, grid, observers);
+        } catch (const lie::NodeFailure& failure) {
+            return failure.status + " " + failure.what();
+        }
+        return watch.findings().empty() ? std::string("ok") : watch.findings().front().name;
+    };
+    // T = exp(-2 c t)/2 J: 60 % are lost at c = 0.46
+    CHECK(findings(0.46, Watch::Action::stop) == "energy_lost");
+    CHECK(findings(0.04, Watch::Action::stop) == "ok");
+    CHECK_THAT(findings(0.46, Watch::Action::strict),
+               Catch::Contains("energy_lost the energy falls by ") &&
+                   Catch::Contains("and nothing in the model dissipates energy; reduce the step"));
+}
+
 TEST_CASE("the checks of a node do not allocate memory", "[run][watch][allocation]")
 {
     dae::Description d = dae::read_model(studies::problem("rolling_ball").model, "rolling_ball");

@@ -92,6 +92,42 @@ void read_coefficients(ObjectReader& o, double& mu_s, double& mu_k)
                "mu_k must not be above mu_s, " + dae::shortest(mu_s) + ", got " + dae::shortest(mu_k));
 }
 
+/// Reads a damping coefficient if the key is given.
+void read_damping(ObjectReader& o, const char* key, std::optional<double>& D, const io::About& about)
+{
+    if (o.given(key)) D = o.not_negative(key, about);
+}
+
+double read_zeta(ObjectReader& o)
+{
+    return o.not_negative("zeta",
+                          {"Damping ratio of the friction springs [-]: D = 2 zeta sqrt(m K), with the "
+                           "effective mass or moment of inertia m of the pair and the stiffness K of the "
+                           "spring.",
+                           "0.5"},
+                          1);
+}
+
+io::About about_D_slide()
+{
+    return {"Damping coefficient of sliding friction [N s/m]. It replaces the value computed from zeta.",
+            "100"};
+}
+
+/// Reads whether the springs hold bodies at rest from the start.
+bool read_static_start(ObjectReader& o, bool usual)
+{
+    const io::About about = {
+        .text =
+            "Springs of friction at the start of a run. static: where the bodies are at rest relative to "
+            "each other they are stretched such that they hold them. unstretched: their deflections are "
+            "zero, and the static load acts on them as a jump. By default static, and unstretched with "
+            "the preset dissertation.",
+        .example = R"("unstretched")",
+        .computed = true};
+    return o.one_of("start", {"static", "unstretched"}, about, usual ? "static" : "unstretched") == "static";
+}
+
 /// Reads the keys that all friction laws have.
 FrictionParameters read_parameters(ObjectReader& o)
 {
@@ -106,26 +142,17 @@ FrictionParameters read_parameters(ObjectReader& o)
 
     read_coefficients(o, p.mu_s, p.mu_k);
     p.K_E = o.positive("K_E", {"Tangential stiffness K_E of sliding friction [N/m].", "10000"});
-    p.zeta =
-        o.not_negative("zeta",
-                       {"Damping ratio of the friction springs [-]: D = 2 zeta sqrt(m K), with the effective "
-                        "mass or moment of inertia m of the pair and the stiffness K of the spring.",
-                        "0.5"},
-                       p.zeta);
-    const auto damping = [&](const char* key, std::optional<double>& D, const io::About& about) {
-        if (o.given(key)) D = o.not_negative(key, about);
-    };
-    damping("D_slide", p.D_slide,
-            {"Damping coefficient of sliding friction [N s/m]. It replaces the value computed from zeta.",
-             "100"});
-    damping("D_roll", p.D_roll,
-            {"Damping coefficient of rolling friction [N m s/rad]. It replaces the value computed from zeta. "
-             "Laws without a rolling spring ignore it.",
-             "0.01"});
-    damping("D_spin", p.D_spin,
-            {"Damping coefficient of spinning friction [N m s/rad]. It replaces the value computed from "
-             "zeta. Laws without a spinning spring ignore it.",
-             "0.01"});
+    p.zeta = read_zeta(o);
+    read_damping(o, "D_slide", p.D_slide, about_D_slide());
+    read_damping(o, "D_roll", p.D_roll,
+                 {"Damping coefficient of rolling friction [N m s/rad]. It replaces the value computed from "
+                  "zeta. Laws without a rolling spring ignore it.",
+                  "0.01"});
+    read_damping(o, "D_spin", p.D_spin,
+                 {"Damping coefficient of spinning friction [N m s/rad]. It replaces the value computed from "
+                  "zeta. Laws without a spinning spring ignore it.",
+                  "0.01"});
+    p.static_start = read_static_start(o, p.static_start);
     p.tracking.beta = o.number(
         "beta",
         {.text =
@@ -263,23 +290,45 @@ struct ConstraintFriction {
     std::optional<ImplicitFriction> within_step;  ///< friction rows of the constraint
 };
 
-ImplicitFriction read_implicit(ObjectReader& o)
+/// Mass [kg] and mean moment of inertia [kg m²] of body b; infinite for the ground
+std::pair<double, double> mass_of(const dae::Model& model, int b)
+{
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    if (b == dae::ground) return {infinite, infinite};
+    return {model.mass().m[b], model.mass().J_bar[b].trace() / 3};
+}
+
+ImplicitFriction read_implicit(ObjectReader& o, const ContactPair& pair)
 {
     io::defines_type(o, friction_kind, implicit, implicit, implicit_schema);
     ImplicitFriction f;
     read_coefficients(o, f.mu_s, f.mu_k);
     f.K_E = o.positive("K_E", {"Tangential stiffness of sliding friction [N/m].", "1e6"});
-    f.K_D = o.not_negative("D_slide", {"Damping coefficient of sliding friction [N s/m].", "100"}, 0);
     f.eta_r = o.not_negative(
         "eta_r",
         {"Rolling resistance coefficient eta_r [-] (Fang 2022, Eq. 4.5). Zero: no rolling resistance.",
          "0.1"},
         0);
-    f.D_roll = o.not_negative("D_roll", {"Damping coefficient of rolling friction [N m s/rad].", "0.01"}, 0);
+    std::optional<double> D_slide, D_roll;
+    const double zeta = read_zeta(o);
+    read_damping(o, "D_slide", D_slide, about_D_slide());
+    read_damping(o, "D_roll", D_roll,
+                 {"Damping coefficient of rolling friction [N m s/rad]. It replaces the value computed from "
+                  "zeta.",
+                  "0.01"});
+    const auto [m_i, I_i] = mass_of(pair.model, pair.i);
+    const auto [m_j, I_j] = mass_of(pair.model, pair.j);
+    f.K_D = D_slide.value_or(2 * zeta * std::sqrt(reduced(m_i, m_j) * f.K_E));
+    if (D_roll)
+        f.D_roll = *D_roll;
+    else
+        f.D_kappa = 2 * zeta * std::sqrt(reduced(I_i, I_j) * 4 * f.eta_r * f.K_E);
+    f.static_start = read_static_start(o, f.static_start);
     return f;
 }
 
-ConstraintFriction read_constraint_friction(ObjectReader& contact, const ConstraintNormal& normal)
+ConstraintFriction read_constraint_friction(ObjectReader& contact, const ContactPair& pair,
+                                            const ConstraintNormal& normal)
 {
     if (!contact.has("friction")) return {};
     ObjectReader o = contact.object("friction", about_friction, "friction");
@@ -293,7 +342,7 @@ ConstraintFriction read_constraint_friction(ObjectReader& contact, const Constra
                "supports, such as slide-roll-spin; got \"" +
                    law + "\", which is defined for the constraint only");
     if (law == implicit)
-        settings.within_step = read_implicit(o);
+        settings.within_step = read_implicit(o, pair);
     else if (settings.ideal_rolling)
         io::defines_type(o, friction_kind, rolling, rolling, rolling_schema);
     else
@@ -316,7 +365,7 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const ContactPair& pair,
 {
     const ConstraintNormal settings = read_constraint_normal(normal, pair);
     o.record("normal", normal.finish());
-    const ConstraintFriction friction = read_constraint_friction(o, settings);
+    const ConstraintFriction friction = read_constraint_friction(o, pair, settings);
     check_smooth(o, pair.surface_i, i);
     check_smooth(o, pair.surface_j, j);
     auto constraint =

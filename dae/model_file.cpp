@@ -498,7 +498,10 @@ std::string text_at(const Description& description, const State& x)
 StartReport start(Description& description, const StartOptions& options)
 {
     try {
-        return start(*description.model, description.x, options);
+        StartReport report = start(*description.model, description.x, options);
+        description.warnings.insert(description.warnings.end(), report.warnings.begin(),
+                                    report.warnings.end());
+        return report;
     } catch (const ConstraintError& e) {
         const std::vector<std::string>& place =
             e.general ? description.general_place : description.constraint_place;

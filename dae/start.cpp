@@ -8,6 +8,8 @@
 #include "dae/forces/spring_limits.hpp"
 #include "dae/model.hpp"
 #include "dae/rank.hpp"
+#include "dae/start/derivative_check.hpp"
+#include "dae/start/static_friction.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/projection.hpp"
@@ -335,10 +337,22 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
+    set_static_pairs(model, K, x);
+    const StaticStart friction = set_static_friction(model, K, x);
+    if (!friction.has_converged)
+        report.warnings.emplace_back(
+            "the friction that holds bodies at rest could not be found at the start: its "
+            "springs start unstretched");
+    for (const Slipping& one : friction.slipping)
+        report.warnings.push_back(model.forces()[static_cast<size_t>(one.force)]->label() +
+                                  ": its bodies are at rest, and " + one.name + " of " + number(one.needed) +
+                                  " would hold them, more than the largest, " + number(one.bound) +
+                                  "; they begin to slip");
     // If all rows are kept, the contradictory ones are not known: any row may have the residual.
     for (const int k : report.redundant > 0 ? model.active_rows() : dropped)
         check_redundant_row(model, model.all_rows()[k], x);
     set_spring_limits(model, K, x);
+    for (std::string& text : wrong_derivatives(model, x)) report.warnings.push_back(std::move(text));
     return report;
 }
 
@@ -346,6 +360,8 @@ void set_start_accelerations(const Model& model, State& x)
 {
     lie::Saddle K(model, lie::Metric::mass, start_solver(model));
     solve_with_internal_states(model, K, x);
+    set_static_pairs(model, K, x);
+    set_static_friction(model, K, x);
 }
 
 void check_dropped_rows(const Model& model, const State& x)

@@ -30,6 +30,9 @@ struct StartReport {
     /// Violations of these rows in their units, such as "0.1 m" for the distance of two points that must
     /// coincide, or "0.02 rad"
     std::string position_violation, velocity_violation;
+    /// For each contact at rest that its friction cannot hold, and for each function of a constraint or a
+    /// force that contradicts differences, see wrong_derivatives()
+    std::vector<std::string> warnings;
     bool projected = false;  ///< whether one of them exceeded the tolerance
 };
 
@@ -41,7 +44,8 @@ struct StartReport {
 /// 3. Positions and velocities are projected onto the remaining rows. Data within the tolerance are projected
 ///    too, which changes them by about the tolerance.
 /// 4. Accelerations and multipliers are computed. If a force depends on multipliers, as friction depends on
-///    the normal force of a contact, both are iterated with Aitken's extrapolation.
+///    the normal force of a contact, both are iterated with Aitken's extrapolation. Springs of friction
+///    between bodies at rest are stretched such that they hold them, see set_static_friction().
 ///
 /// Throws lie::InvalidInput with the name of the row if the data violate a constraint by more than the
 /// tolerance and fix_initial is not set, or if a redundant row contradicts the others in position, velocity

@@ -100,7 +100,7 @@ const std::map<std::string, FolderOrder> ordered_rooms = {
 const std::map<std::string, std::set<std::string>> folders = {
     {"io", {"", "arithmetic", "formats", "schema"}},
     {"lie", {"", "integrators", "solver", "steps"}},
-    {"dae", {"", "constraints", "curves", "forces", "joints", "outputs"}},
+    {"dae", {"", "constraints", "curves", "forces", "joints", "outputs", "start"}},
     {"contact",
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "scenes",
       "scenes/dvi", "surfaces"}},

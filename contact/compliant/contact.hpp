@@ -60,6 +60,13 @@ public:
     ContactState state_at_largest_compression(const Motion& bi, const Motion& bj,
                                               const ContactHistory& history, double weight) const;
 
+    /// Distance of the surfaces [m], negative for an overlap
+    double gap(const Motion& bi, const Motion& bj, const ContactHistory& history) const
+    {
+        return detect(bi, bj, history).gap;
+    }
+    double smaller_of_sizes() const { return smaller_size; }  ///< of the two surfaces [m]
+
     /// Whether the gap is at most 1e-6 times the smaller size of the surfaces
     bool is_near_contact(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 

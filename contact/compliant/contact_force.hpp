@@ -28,6 +28,8 @@ public:
     double stable_step(const lie::State& x,
                        lie::LoadEvaluation evaluation = lie::LoadEvaluation::at_step) const override;
     bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const override;
+    /// Throws NumericalFailure "contact_missed" if the bodies pass through each other within the step.
+    void check_step(const lie::State& before, const lie::State& after) const override;
     /// Overlap at the last accepted node [m]; 0 while the surfaces are apart
     double overlap(const lie::State& x) const;
     /// CompliantContact::relative_overlap() at the last accepted node

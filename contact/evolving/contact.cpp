@@ -40,6 +40,20 @@ double gradient_norm(const Vec3& gradient, const Vec3& a)
     throw lie::NumericalFailure("contact_lost", what.str());
 }
 
+/// The normal force from the multipliers of a contact; n: its normal
+double normal_force(const dae::Constraint::Arguments& x, const Vec3& n)
+{
+    const Vec3 Psi = x.lambda->segment<3>(x.row);
+    return Psi.dot(n) > 0 ? Psi.norm() : 0;
+}
+
+/// Whether a friction force is at its bound
+bool is_at_bound(const Eigen::Vector2d& lambda, double bound)
+{
+    constexpr double tolerance = 1e-4;  // relative; above the tolerance of lie::BoundedRows
+    return lambda.norm() > (1 - tolerance) * bound;
+}
+
 }  // namespace
 
 /// Contact point, normal and surface function of one body, in global axes
@@ -235,8 +249,8 @@ void EvolvingContact::set_pairs(const Arguments& x, lie::BoundedPair* out) const
     if (!law.has_rolling_resistance()) return;
     const ContactPoint at = contact_point(x);
     const double kappa = 2 / lever_arms(at.K_i + at.K_j, n).trace();
-    set_pair(out[rolling_pair], state.rolling, 4 * law.eta_r * law.K_E, law.D_roll * kappa * kappa,
-             2 * law.eta_r);
+    set_pair(out[rolling_pair], state.rolling, 4 * law.eta_r * law.K_E,
+             law.D_roll * kappa * kappa + law.D_kappa * kappa, 2 * law.eta_r);
     out[rolling_pair].solved_first = true;
 }
 
@@ -244,7 +258,6 @@ void EvolvingContact::set_pairs(const Arguments& x, lie::BoundedPair* out) const
 /// to zero at a start and for an inactive contact.
 void EvolvingContact::update_friction(const Arguments& x, bool start, NodeState& state) const
 {
-    constexpr double bound_tolerance = 1e-4;  // relative to |λ|; above the tolerance of lie::BoundedRows
     const double h = start ? 0 : x.t - state.t;
     state.t = x.t;
     if (start || x.mode != active) {
@@ -254,16 +267,34 @@ void EvolvingContact::update_friction(const Arguments& x, bool start, NodeState&
     }
     lie::BoundedPair pair[2];
     set_pairs(x, pair);
-    const Vec3 Psi = x.lambda->segment<3>(x.row);
-    const double N = Psi.dot(pair[sliding_pair].n) > 0 ? Psi.norm() : 0;
+    const double N = normal_force(x, pair[sliding_pair].n);
     for (const RowPair p : {sliding_pair, rolling_pair}) {
         if (p == rolling_pair && !law.has_rolling_resistance()) continue;
         NodeState::Pair& saved = p == sliding_pair ? state.sliding : state.rolling;
         const lie::BoundedPair& c = pair[p];
         const Eigen::Vector2d lambda = x.lambda->segment<2>(x.velocity_row + 2 * p);
         saved.S += h * c.mobility(h) * (lambda - c.K * c.S);
-        saved.slipping = lambda.norm() > (1 - bound_tolerance) * c.mu * N;
+        saved.slipping = is_at_bound(lambda, c.mu * N);
     }
+}
+
+void EvolvingContact::set_static_pairs(const Arguments& x, const bool* at_rest, double* internal_state) const
+{
+    if (x.mode != active || !law.static_start) return;
+    auto state = restored<NodeState>(internal_state);
+    lie::BoundedPair pair[2];
+    set_pairs(x, pair);
+    const double N = normal_force(x, pair[sliding_pair].n);
+    for (const RowPair p : {sliding_pair, rolling_pair}) {
+        if (p == rolling_pair && !law.has_rolling_resistance()) continue;
+        if (!at_rest[p]) continue;
+        NodeState::Pair& saved = p == sliding_pair ? state.sliding : state.rolling;
+        const lie::BoundedPair& c = pair[p];
+        const Eigen::Vector2d lambda = x.lambda->segment<2>(x.velocity_row + 2 * p);
+        saved.slipping = is_at_bound(lambda, c.mu * N);
+        saved.S = (saved.slipping != 0 ? law.mu_k / law.mu_s : 1) / c.K * lambda;
+    }
+    save(state, internal_state);
 }
 
 unsigned EvolvingContact::nonzero(int row) const

@@ -123,6 +123,7 @@ public:
     void gamma(const Arguments& x, double* out) const override;
     unsigned nonzero(int row) const override;
     void set_pairs(const Arguments& x, lie::BoundedPair* out) const override;
+    void set_static_pairs(const Arguments& x, const bool* at_rest, double* internal_state) const override;
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
     int update_mode(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;
@@ -136,6 +137,11 @@ public:
     std::string label() const override { return "contact '" + name + "'"; }
     std::string row_name(int row) const override;
 
+    /// Signed distance of the two bodies in these poses, without α [m]. Throws lie::NumericalFailure.
+    double distance(const Motion& bi, const Motion& bj) const
+    {
+        return detector->detect(bi, bj, nullptr).gap;
+    }
     /// Signed distance of the two bodies at the points α [m], negative for an overlap
     double gap(const Arguments& x) const { return contact_point(x).gap; }
     /// Time derivative of the gap [m/s]

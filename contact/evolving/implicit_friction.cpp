@@ -18,6 +18,7 @@ void ImplicitFriction::validate() const
     check("K_D must not be negative", K_D, K_D >= 0);
     check("eta_r must not be negative", eta_r, eta_r >= 0);
     check("D_roll must not be negative", D_roll, D_roll >= 0);
+    check("D_kappa must not be negative", D_kappa, D_kappa >= 0);
 }
 
 }  // namespace hilda::contact

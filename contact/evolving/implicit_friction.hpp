@@ -11,14 +11,14 @@ namespace hilda::contact {
 /// pair for sliding and, if η_r > 0, one pair for rolling.
 ///
 ///     λ   = K_E (S + h ṡ) + K_D ṡ,              ṡ = T'ᵀ (v_i - v_j) at C                 |λ| ≤ μ F_N
-///     λ_R = 4 η_r K_E (Z + h ż) + D_R κ² ż,     ż = T'ᵀ (K_i + K_j)⁻¹ n_i × (ω_i - ω_j)  |λ_R| ≤ 2 η_r μ F_N
+///     λ_R = 4 η_r K_E (Z + h ż) + D_z ż,  ż = T'ᵀ (K_i + K_j)⁻¹ n_i × (ω_i - ω_j)  |λ_R| ≤ 2 η_r μ F_N
 ///
 /// -T' λ acts on the material point of body i, T' λ on that of body j. T' is the tangent basis of the node
 /// projected on the tangent plane. ż is the velocity of the contact point over the bodies in rolling, and Z
 /// its elastic displacement: |Z| = |(K_i + K_j)⁻¹ Θ| of slide-roll-spin, with the same spring and the same
-/// bound but without a preferred direction. 1/κ is the mean of the two lever arms, the eigenvalues of (K_i +
-/// K_j)⁻¹ limited to 10 L. F_N is the normal force of the same step. The rolling pair is solved first (see
-/// lie::BoundedRows).
+/// bound but without a preferred direction. D_z = D_R κ² + D_κ κ. 1/κ is the mean of the two lever arms, the
+/// eigenvalues of (K_i + K_j)⁻¹ limited to 10 L. F_N is the normal force of the same step. The rolling pair
+/// is solved first (see lie::BoundedRows).
 ///
 /// After the step the elastic displacement is updated as for a spring and a damper in series with a slider,
 ///
@@ -35,6 +35,8 @@ struct ImplicitFriction {
     double K_D = 0;             ///< [N s/m]
     double eta_r = 0;           ///< rolling resistance; 0: none                                     Eq. 4.5
     double D_roll = 0;          ///< rotational damping D_R [N m s/rad]
+    double D_kappa = 0;         ///< D_z/κ in addition [N s]: critical damping is proportional to κ
+    bool static_start = true;   ///< at a start S and Z hold bodies at rest, instead of being zero
 
     bool has_rolling_resistance() const { return eta_r > 0; }
     /// Throws lie::InvalidInput if a parameter is out of range.

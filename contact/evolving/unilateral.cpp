@@ -18,8 +18,9 @@ namespace {
 
 using lie::State;
 
+constexpr double short_motion = 0.1;     // of bodies in a step, relative to L: contact cannot be missed
 constexpr double gap_tolerance = 1e-13;  // gap counted as zero, relative to L
-constexpr int max_gap_iterations = 80;   // of regula falsi
+constexpr double narrowest = 1e-15;      // width of a bracket of a zero gap, relative to the step
 constexpr int max_events = 50;           // in one step, for each contact
 constexpr double min_remainder = 1e-9;   // remaining time that is skipped, relative to h
 
@@ -83,13 +84,25 @@ bool UnilateralStep::overlaps(const TrackedContact& c, const State& x) const
     return is_inactive(c, x) && gap(c, x) < -gap_tolerance * c.contact->L;
 }
 
-/// Updates the nearest points of the inactive contacts.
-void UnilateralStep::update_alpha(State& x) const
+/// The relative motion of the surfaces of a contact in a step
+Passage UnilateralStep::passage(const TrackedContact& c, const State& from, const State& to) const
+{
+    const EvolvingContact& at = *c.contact;
+    const Motion &i = dae::motion(from, at.i), &j = dae::motion(from, at.j);
+    const ContactPoint points = at.contact_point(model.arguments(at, from));
+    return Passage(i, dae::motion(to, at.i), j, dae::motion(to, at.j), to.t - from.t,
+                   (points.C_i - i.r).norm(), (points.C_j - j.r).norm());
+}
+
+/// Updates the nearest points of the inactive contacts after a step. After a long motion Newton's method
+/// may find other points with a common normal, such as those at the far sides of two spheres.
+void UnilateralStep::update_alpha(const State& from, State& to) const
 {
     for (const TrackedContact& c : contact)
-        if (is_inactive(c, x))
-            c.contact->update_alpha(model.arguments(*c.contact, x), false,
-                                    x.alpha.data() + dae::Model::place(*c.contact).alpha);
+        if (is_inactive(c, to))
+            c.contact->update_alpha(model.arguments(*c.contact, to),
+                                    passage(c, from, to).length() > short_motion * c.contact->L,
+                                    to.alpha.data() + dae::Model::place(*c.contact).alpha);
 }
 
 int UnilateralStep::step(State& x, double h)
@@ -236,7 +249,7 @@ int UnilateralStep::try_step(const State& from, State& to, double h)
     to = from;
     const int k = scheme->step(to, h);
     to.t = from.t + h;
-    update_alpha(to);
+    update_alpha(from, to);
     return k;
 }
 
@@ -323,12 +336,36 @@ UnilateralStep::TrackedContact* UnilateralStep::first_to_close(const State& from
     return next;
 }
 
+/// The part of the step after which the bodies of an inactive contact without an overlap in `to` have passed
+/// into each other; 1 if there is none
+double UnilateralStep::first_passage(const State& from, const State& to) const
+{
+    double first = 1;
+    for (const TrackedContact& c : contact) {
+        if (!is_inactive(c, from) || overlaps(c, to)) continue;
+        const EvolvingContact& at = *c.contact;
+        const Passage motion = passage(c, from, to);
+        const double begin = gap(c, from);
+        if (!(motion.length() > short_motion * at.L) || !(begin > gap_tolerance * at.L) ||
+            begin + gap(c, to) > motion.length())
+            continue;
+        const double s = motion.first_overlap(
+            begin, at.L, [&](const Motion& bi, const Motion& bj) { return at.distance(bi, bj); });
+        first = std::min(first, s);
+    }
+    return first;
+}
+
 /// Returns the length of the step from `from` after which the first gap is zero, and sets `to` to the
 /// state there and `first` to the contact. Returns h and sets `first` to nullptr if no inactive contact
 /// overlaps in `to`.
 double UnilateralStep::find_closing(const State& from, State& to, double h, TrackedContact*& first)
 {
     first = nullptr;
+    for (double s = 1; (s = first_passage(from, to)) < 1;) {
+        h *= s;
+        try_step(from, to, h);
+    }
     const double whole = h;
     while (TrackedContact* next = first_to_close(from, to)) {
         first = next;
@@ -360,13 +397,15 @@ double UnilateralStep::find_zero_gap(const TrackedContact& c, const State& from,
         if (g_a < -tolerance) b = a, g_b = g_a;
     }
     lie::Bracket bracket(a, g_a, b, g_b);
-    for (int k = 0; k < max_gap_iterations && bracket.b - bracket.a > 1e-15 * h; ++k) {
-        const double s = bracket.next();
+    double found = 0;
+    lie::narrow(bracket, narrowest * h, [&](double s) {
         try_step(from, to, s);
         const double g = gap(c, to);
-        if (std::abs(g) <= tolerance) return s;
-        bracket.add(s, g);
-    }
+        if (std::abs(g) > tolerance) return g;
+        found = s;
+        return 0.;
+    });
+    if (found > 0) return found;
     // Rounding prevents a gap within the tolerance. Take the longest step known to have no overlap.
     try_step(from, to, bracket.a);
     return bracket.a;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/detection/passage.hpp"
 #include "contact/evolving/contact.hpp"
 #include "dae/model.hpp"
 #include "lie/integrator.hpp"
@@ -140,13 +141,15 @@ private:
     double gap(const TrackedContact& c, const lie::State& x) const;
     double separation_speed(const TrackedContact& c, const lie::State& x) const;
     bool overlaps(const TrackedContact& c, const lie::State& x) const;
-    void update_alpha(lie::State& x) const;
+    Passage passage(const TrackedContact& c, const lie::State& from, const lie::State& to) const;
+    void update_alpha(const lie::State& from, lie::State& to) const;
 
     int advance(lie::State& x, double h);
     int try_step(const lie::State& from, lie::State& to, double h);
     void restart(lie::State& x);
     bool deactivate_tensile(lie::State& x);
     TrackedContact* first_to_close(const lie::State& from, const lie::State& to);
+    double first_passage(const lie::State& from, const lie::State& to) const;
     double find_closing(const lie::State& from, lie::State& to, double h, TrackedContact*& first);
     double find_zero_gap(const TrackedContact& c, const lie::State& from, lie::State& to, double h);
     void resolve_impact(lie::State& x, TrackedContact& c, double h);

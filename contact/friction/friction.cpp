@@ -84,7 +84,7 @@ FrictionParameters FrictionParameters::as_in_dissertation() const
 {
     FrictionParameters p = *this;
     p.tracking = {.beta = 1, .carrier = Carrier::i};
-    p.capped = p.relative_rolling = p.reduced_mass = false;
+    p.capped = p.relative_rolling = p.reduced_mass = p.static_start = false;
     return p;
 }
 

@@ -86,6 +86,20 @@ struct Springs {
     double K_spin = 0, D_spin = 0;    ///< [N m/rad, N m s/rad]
 };
 
+/// The springs with which a friction law holds two bodies at rest. Their forces have components in (u, w) of
+/// the contact frame, or about n. A spring with K = 0 does not exist.
+struct StaticSprings {
+    struct Spring {
+        double K = 0, bound_s = 0, bound_k = 0;  ///< stiffness; bounds of the force in stick and slip
+    };
+    Spring slide;  ///< F = K S on i                                                             [N/m, N]
+    /// The force y = K_y κ⁻¹ Θ belongs to the torque (lever y) × n on i, with lever = κ⁻¹         [N/m, N],
+    /// or the torque y × n with lever = 1                                                   [N m/rad, N m]
+    Spring roll;
+    Eigen::Matrix2d lever = Eigen::Matrix2d::Identity();
+    Spring spin;  ///< torque -K Ψ n on i                                                  [N m/rad, N m]
+};
+
 /// Reduced mass or moment of inertia a b / (a + b), of which one may be infinite
 double reduced(double a, double b);
 
@@ -105,6 +119,8 @@ public:
     virtual Wrench load(const ContactState& now, const Rates& rates,
                         const Deflections& deflections) const = 0;
     virtual Springs springs(const ContactState& now) const = 0;
+    /// The springs that are stretched at a start such that they hold bodies at rest; by default none
+    virtual StaticSprings static_springs(const ContactState& /*now*/) const { return {}; }
     virtual bool needs_curvature() const { return false; }  ///< true for rolling or spinning resistance
 };
 
@@ -119,7 +135,8 @@ struct FrictionParameters {
     double eta_r = 0;  ///< rolling resistance coefficient; 0: none                                Eq. 4.6
     double eta_psi = 0;  ///< spinning resistance coefficient; 0: none                              Eq. 4.9
     double E_star = 0;  ///< effective modulus [Pa] of a Hertzian contact patch, instead of η_ψ     Sec. A.8
-    double mu_r = 0;    ///< rolling friction coefficient of constant-torque and epsd: M_r ≤ μ_r R N
+    bool critical_spin = false;  ///< with E_star: the torque is at most 3π/16 μ N a instead of μ N a/2
+    double mu_r = 0;  ///< rolling friction coefficient of constant-torque and epsd: M_r ≤ μ_r R N
 
     /// Damping of sliding, rolling and spinning [N s/m, N m s/rad]; if given, it replaces the value from ζ
     std::optional<double> D_slide = {}, D_roll = {}, D_spin = {};
@@ -129,9 +146,10 @@ struct FrictionParameters {
     /// One relative rolling vector with opposite torques, instead of one vector per body
     bool relative_rolling = true;
     bool reduced_mass = true;  ///< fictitious mass m_i m_j / (m_i + m_j), instead of the mean
+    bool static_start = true;  ///< at a start the springs hold bodies at rest, instead of being unstretched
 
     /// These parameters with the dissertation preset: β = 1, contact frame of body i, no limit on the damper,
-    /// one rolling vector per body, mean masses.
+    /// one rolling vector per body, mean masses, springs unstretched at a start.
     FrictionParameters as_in_dissertation() const;
     /// InvalidInput for values outside their range
     void validate() const;

@@ -164,6 +164,75 @@ void TrackedForce::update_internal_state(lie::State& x) const
     if (is_active(x)) save(at(x), x);
 }
 
+int TrackedForce::static_springs(const lie::State& x, StaticSpring* out) const
+{
+    if (!is_active(x)) return 0;
+    const Instant now = at(x);
+    const ContactState& m = now.contact_state;
+    if (!(m.N > 0)) return 0;
+    const StaticSprings law = this->law().static_springs(m);
+    const Motion &bi = motion(x, i), &bj = motion(x, j);
+    const Rates rate = rates(m.contact_point, m.slip, bi, bj);
+    const Vec3 &n = m.slip.n, &u = m.slip.u, w = n.cross(u), C = m.contact_point.C();
+    const Vec3 s_i = C - bi.r, s_j = C - bj.r, omega_i = bi.A * bi.omega_bar, omega_j = bj.A * bj.omega_bar;
+    const Vec3 omega = omega_i - omega_j, ndot = omega_j.cross(n) + m.contact_point.K_j * rate.p_j;
+    const auto set = [](StaticSpring& spring, const StaticSprings::Spring& of, int rows) {
+        spring = {.row = {}, .rows = of.K > 0 ? rows : 0, .bound = of.bound_s, .bound_of_slip = of.bound_k};
+        for (SpringRow& row : spring.row) row.stiffness = of.K;
+    };
+    // a row of the relative rotation ω_i - ω_j about a vector that moves with the rate adot
+    const auto rotation = [&](SpringRow& row, const Vec3& a, const Vec3& adot) {
+        row.pi_i = bi.A.transpose() * a, row.pi_j = -(bj.A.transpose() * a);
+        row.gamma = omega.dot(adot);
+    };
+
+    // A body that rolls in spite of its rolling resistance is usual: no warning.
+    set(out[0], law.slide, 2);
+    out[0].name = "sliding friction";
+    // derivative of the velocity of j relative to i where they touch, for constant ṙ and ω̄; the point moves
+    // with the velocity p_i relative to the bodies
+    const Vec3 gamma =
+        omega_j.cross(omega_j.cross(s_j)) - omega_i.cross(omega_i.cross(s_i)) - omega.cross(rate.p_i);
+    for (const int k : {0, 1}) {
+        SpringRow& row = out[0].row[static_cast<std::size_t>(k)];
+        const Vec3 t = k == 0 ? u : w;
+        row.r_i = -t, row.pi_i = -(bi.A.transpose() * s_i.cross(t));
+        row.r_j = t, row.pi_j = bj.A.transpose() * s_j.cross(t);
+        row.gamma = gamma.dot(t);
+    }
+
+    set(out[1], law.roll, 2);
+    for (const int k : {0, 1}) {
+        const Vec3 t = law.lever(k, 0) * u + law.lever(k, 1) * w;  // ẏ/K = t · (ω × n) = ω · (n × t)
+        rotation(out[1].row[static_cast<std::size_t>(k)], n.cross(t), ndot.cross(t));
+    }
+
+    set(out[2], law.spin, 1);
+    rotation(out[2].row[0], n, ndot);
+    return 3;
+}
+
+void TrackedForce::set_static_forces(lie::State& x, const StaticForce* forces) const
+{
+    if (!is_active(x)) return;
+    Instant now = at(x);
+    const ContactState& m = now.contact_state;
+    if (!(m.N > 0)) return;
+    const StaticSprings law = this->law().static_springs(m);
+    Deflections& d = now.history.deflections;
+    const auto deflection = [](const StaticSprings::Spring& of, const StaticForce& by) -> Vec2 {
+        return of.K > 0 ? Vec2(by.f / of.K) : Vec2(Vec2::Zero());
+    };
+    const auto set = [](Regime& regime, const StaticForce& by) {
+        regime = {.slipping = by.slips, .damped = !by.slips};
+    };
+    d.S = deflection(law.slide, forces[0]);
+    d.Theta_i = law.lever.inverse() * deflection(law.roll, forces[1]);
+    d.Psi = deflection(law.spin, forces[2])[0];
+    set(d.slide, forces[0]), set(d.roll_i, forces[1]), set(d.spin, forces[2]);
+    save(now, x);
+}
+
 bool TrackedForce::is_touching(const lie::State& x) const
 {
     ContactHistory m;

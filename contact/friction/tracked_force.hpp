@@ -34,6 +34,10 @@ public:
     int last_body() const override { return std::max(i, j); }
     std::string label() const override { return "contact '" + name + "'"; }
 
+    int max_static_springs() const override { return 3; }
+    int static_springs(const lie::State& x, StaticSpring* out) const override;
+    void set_static_forces(lie::State& x, const StaticForce* forces) const override;
+
     /// The contact history stored in x
     ContactHistory saved_history(const lie::State& x) const;
     /// State of the contact at x, and the history advanced to x

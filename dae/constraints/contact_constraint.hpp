@@ -44,6 +44,12 @@ public:
     /// position rows.
     virtual void set_pairs(const Arguments& /*x*/, lie::BoundedPair* /*out*/) const {}
 
+    /// Sets the elastic displacements of the bounded pairs at a start to those of the multipliers x.lambda.
+    /// `at_rest` has a value for each pair: whether its C v is zero. The others remain without displacement.
+    virtual void set_static_pairs(const Arguments& /*x*/, const bool* /*at_rest*/,
+                                  double* /*internal_state*/) const
+    {}
+
     /// Violation of an active constraint by the positions or velocities of a start
     struct Violation {
         double value = 0, most = 0;  ///< measured and largest accepted value

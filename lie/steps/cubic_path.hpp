@@ -20,18 +20,28 @@ struct Hermite {
     }
 };
 
+/// Pose and velocity of a body at the fraction s of a step h from a to b, on the cubic Hermite polynomials of
+/// r and of θ = log(A_aᵀ A)
+inline Motion between(const Motion& a, const Motion& b, double h, double s)
+{
+    const Vec3 turn = log(a.A.transpose() * b.A), turn_rate = right_jacobian_inverse(turn) * b.omega_bar;
+    const Hermite r(b.r - a.r, h * a.rdot, h * b.rdot, s), theta(turn, h * a.omega_bar, h * turn_rate, s);
+    Motion x = b;
+    x.r = a.r + r.value, x.rdot = r.slope / h;
+    x.A = a.A * exp(theta.value);
+    x.omega_bar = right_jacobian(theta.value) * theta.slope / h;
+    return x;
+}
+
 /// Sets the time, the poses and the velocities of x to those at the fraction s from `from` to `to`, on the
-/// cubic Hermite polynomials of r and of θ = log(A_nᵀ A). They need not satisfy the constraints.
+/// paths of between(). They need not satisfy the constraints.
 inline void set_between(const State& from, const State& to, double s, State& x)
 {
     const double h = to.t - from.t;
     for (std::size_t i = 0; i < x.body.size(); ++i) {
-        const Motion &a = from.body[i], &b = to.body[i];
-        const Vec3 turn = log(a.A.transpose() * b.A), turn_rate = right_jacobian_inverse(turn) * b.omega_bar;
-        const Hermite r(b.r - a.r, h * a.rdot, h * b.rdot, s), theta(turn, h * a.omega_bar, h * turn_rate, s);
-        x.body[i].r = a.r + r.value, x.body[i].rdot = r.slope / h;
-        x.body[i].A = a.A * exp(theta.value);
-        x.body[i].omega_bar = right_jacobian(theta.value) * theta.slope / h;
+        const Motion at = between(from.body[i], to.body[i], h, s);
+        x.body[i].r = at.r, x.body[i].rdot = at.rdot;
+        x.body[i].A = at.A, x.body[i].omega_bar = at.omega_bar;
     }
     x.t = from.t + s * h;
 }

@@ -1,72 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/bindings/constraint.hpp"
 
-#include "lie/check.hpp"
-#include "lie/so3.hpp"
+#include "dae/start/differences.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace hilda::python {
 
 namespace {
 
+using dae::after;
+using dae::derivative;
+using dae::RowValues;
+
 constexpr double displacement =
     1.2e-5;                          // [m, rad], of poses; the result is extrapolated from it and its half
 constexpr double first_step = 2e-3;  // [s, m or rad], the largest of differences along a motion
-
-using RowValues = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, dae::Constraint::max_position_rows, 1>;
-
-/// The first or second derivative of f at 0, by differences of fourth order. The step begins with h and is
-/// halved while that reduces the difference of two results, which is the estimate of the error: the motion
-/// may be curved within a much smaller length than h.
-///
-/// Throws lie::NumericalFailure "differences" if the estimate exceeds `most` relative to the derivative.
-template <class Function>
-RowValues derivative(const Function& f, int order, double h, const std::string& what)
-{
-    constexpr int halvings = 14;
-    constexpr double enough = 1e-11, most = 1e-5, least = 1e-7;
-    const RowValues zero = order == 2 ? RowValues(f(0)) : RowValues();
-    RowValues far_plus = f(2 * h), far_minus = f(-2 * h), best;
-    double error = std::numeric_limits<double>::infinity(), size = 0;
-    RowValues before;
-    for (int k = 0; k < halvings; ++k, h *= 0.5) {
-        const RowValues plus = f(h), minus = f(-h);
-        RowValues now =
-            order == 1 ? RowValues((8 * (plus - minus) - (far_plus - far_minus)) / (12 * h))
-                       : RowValues((16 * (plus + minus) - (far_plus + far_minus) - 30 * zero) / (12 * h * h));
-        far_plus = plus, far_minus = minus;
-        if (k > 0) {
-            const double change = (now - before).template lpNorm<Eigen::Infinity>();
-            if (change >= error && error <= most * size + least) break;  // rounding errors
-            if (change < error) {
-                error = change, best = now;
-                size = now.template lpNorm<Eigen::Infinity>();
-            }
-            if (error <= enough * size) break;
-        }
-        before = std::move(now);
-    }
-    if (!(error <= most * size + least))
-        throw lie::NumericalFailure(
-            "differences",
-            fmt::format("{} by differences has an error of {:.1e}; give the function", what, error));
-    return best;
-}
-
-/// The motion after a time s with constant velocities
-lie::Motion after(const lie::Motion& from, double s)
-{
-    lie::Motion to = from;
-    to.r += s * from.rdot;
-    to.A = from.A * lie::exp(s * from.omega_bar);
-    return to;
-}
 
 double rate(const lie::Motion& of) { return std::max(of.rdot.norm(), of.omega_bar.norm()); }
 
@@ -184,42 +137,6 @@ PythonConstraint::PositionRows PythonConstraint::gamma_by_differences(const Argu
     const double h = first_step / std::max({1., rate(x.bi), rate(x.bj)});
     return has(variation_) ? -derivative([&](double s) { return rate_at(x, s); }, 1, h, "gamma of " + label())
                            : -derivative([&](double s) { return phi_at(x, s); }, 2, h, "gamma of " + label());
-}
-
-std::vector<std::string> PythonConstraint::check(const Arguments& start) const
-{
-    // Any velocities: gamma is zero at rest
-    lie::Motion bi = start.bi, bj = start.bj;
-    for (auto& [body, number] : {std::pair{&bi, i}, {&bj, j}})
-        if (number != dae::ground) {
-            body->rdot += lie::Vec3(0.31, -0.23, 0.47);
-            body->omega_bar += lie::Vec3(-0.29, 0.53, 0.17);
-        }
-    const Arguments x{bi, bj, start.t};
-    std::vector<std::string> found;
-    const auto compare = [&](const char* what, const auto& given, const auto& difference) {
-        constexpr double most = 1e-4;
-        Eigen::Index row = 0, column = 0;
-        const double largest = (given - difference).cwiseAbs().maxCoeff(&row, &column);
-        if (largest > most * std::max(1., difference.cwiseAbs().maxCoeff()))
-            found.push_back(fmt::format("{}: {} of row {} is {:.6g}, by differences {:.6g}{}", label(), what,
-                                        row + 1, given(row, column), difference(row, column),
-                                        given.cols() > 1 ? fmt::format(" (column {})", column + 1) : ""));
-    };
-    try {
-        PositionRows value(rows);
-        if (has(variation_)) {
-            Derivatives given, difference;
-            given.set_zero(*this), difference.set_zero(*this);
-            variation(x, given), differences(x, difference);
-            compare("C_i", given.C_i, difference.C_i);
-            if (j != dae::ground) compare("C_j", given.C_j, difference.C_j);
-        }
-        if (has(nu_)) nu(x, value.data()), compare("nu", value, nu_by_differences(x));
-        if (has(gamma_)) gamma(x, value.data()), compare("gamma", value, gamma_by_differences(x));
-    } catch (const lie::NumericalFailure&) {  // there is nothing to compare with
-    }
-    return found;
 }
 
 }  // namespace hilda::python

@@ -35,10 +35,6 @@ public:
     void nu(const Arguments& x, double* out) const override;
     void gamma(const Arguments& x, double* out) const override;
 
-    /// Compares the functions that are given with differences, with velocities of the order of 1, and returns
-    /// a line for each that differs.
-    std::vector<std::string> check(const Arguments& start) const;
-
 private:
     enum Which { phi_, variation_, nu_, gamma_ };
     using PositionRows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_position_rows, 1>;

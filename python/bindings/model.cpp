@@ -82,10 +82,6 @@ ModelPointer started(const Read& read, const Parts& parts, bool fix_initial)
         of.load(std::move(force));
     }
     model->start = dae::start(model->description, {.fix_initial = fix_initial});
-    for (const auto& constraint : of.general_constraints())
-        if (const auto* own = dynamic_cast<const PythonConstraint*>(constraint.get()))
-            for (std::string& difference : own->check(of.arguments(*own, model->description.x)))
-                model->description.warnings.push_back(std::move(difference));
     return model;
 }
 

@@ -80,7 +80,8 @@ const bool braked = register_problem(
      .contact_point = planar_point,
      .r = planar_r,
      .friction =
-         R"({"law": "slide-roll-spin", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100, "eta_r": 0.1})",
+         R"({"law": "slide-roll-spin", "mu_s": 0.25, "mu_k": 0.2, "K_E": 1e4, "D_slide": 100, "eta_r": 0.1, )"
+         R"("start": "unstretched"})",
      .note = "; Table 5.1, homogeneous; stable for steps up to 3.26e-3 s, without eta_r up to 4.64e-3 s"});
 
 /// An ellipsoid on the plane z = 0

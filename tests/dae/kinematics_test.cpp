@@ -312,7 +312,7 @@ namespace {
 
 /// A planar four-bar: crank a, coupler b and rocker c between the pins (0, 0) and (d, 0); the coupler is
 /// above (side 1) or below (-1) the line from its crank pin to the ground pin of the rocker.
-struct FourBar {
+struct CrankRocker {
     double a, b, c, d;
     int side;
 
@@ -372,7 +372,7 @@ TEST_CASE("kinematic analysis stays on its branch at any speed", "[dae][kinemati
     int tried = 0;
     for (int k = 0; k < 30; ++k) {
         // The crank is the shortest link, and rotates fully.
-        FourBar f{random.number(0.05, 0.3), 0, 0, 1, k % 2 == 0 ? 1 : -1};
+        CrankRocker f{random.number(0.05, 0.3), 0, 0, 1, k % 2 == 0 ? 1 : -1};
         f.b = random.number(0.5, 1.5);
         f.c = random.number(std::abs(f.b - f.d) + 1.1 * f.a, f.b + f.d - 1.1 * f.a);
         if (f.c < 1.1 * f.a) continue;
@@ -387,7 +387,7 @@ TEST_CASE("kinematic analysis stays on its branch at any speed", "[dae][kinemati
 
 TEST_CASE("kinematic analysis passes a kink of a driver, and ends at a jump", "[dae][kinematics]")
 {
-    const FourBar f{0.25, 0.9, 0.6, 1, 1};
+    const CrankRocker f{0.25, 0.9, 0.6, 1, 1};
     CHECK(f.error("5*abs(t-0.023)", 1e-2, 5) < 1e-10);
     try {
         f.error("2*t+0.4*step(t-0.023)", 1e-2, 5);
@@ -397,7 +397,7 @@ TEST_CASE("kinematic analysis passes a kink of a driver, and ends at a jump", "[
         CHECK(std::string(failure.what()) == "the motion of body 'crank' is not continuous at t = 0.023 s");
     }
     // The rocker as crank cannot pass its dead point.
-    const FourBar dead{0.6, 0.9, 0.25, 1, 1};
+    const CrankRocker dead{0.6, 0.9, 0.25, 1, 1};
     CHECK_THROWS_AS(dead.error("1.2+20*t", 1e-2, 20), lie::NumericalFailure);
 }
 

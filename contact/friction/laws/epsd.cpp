@@ -56,6 +56,13 @@ public:
     }
 
 private:
+    void add_static_rotation(const ContactState& now, StaticSprings& all) const override
+    {
+        const RollingSpring spring = rolling(now);
+        const double bound = spring.K * spring.cap;
+        if (p.mu_r > 0) all.roll = {.K = spring.K, .bound_s = bound, .bound_k = bound};
+    }
+
     struct RollingSpring {
         double K = 0, D = 0, cap = 0;
     };

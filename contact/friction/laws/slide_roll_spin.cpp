@@ -13,6 +13,10 @@
 ///     |Ψ| ≤ κ μ N / K_E, K_ψ = η_ψ K_E / κ²,     or with a Hertzian patch of radius a                  (4.9)
 ///     |Ψ| ≤ μ N / (K_E a), K_ψ = a² K_E / 2,     a³ = 3 N / (4 κ E*)                             (A.21-A.23)
 ///
+/// The torque of the Hertzian patch is thus at most μ N a / 2. When the whole patch slips under Hertz's
+/// pressure it is 3π/16 μ N a = 0.589 μ N a (Johnson 1985, Sec. 7.4), the bound with critical_spin.
+///
+///
 /// Balanced preset (default): n × (K_i q_i + K_j q_j) is the rotation of i relative to j without the spin.
 /// One vector Θ gives opposite torques, so that angular momentum is conserved. In rolling, κ is the tensor
 /// K_i + K_j:
@@ -31,6 +35,7 @@
 #include "contact/normal/normal_law.hpp"
 #include "dae/object_reader.hpp"
 
+#include <numbers>
 #include <utility>
 
 namespace hilda::contact {
@@ -134,6 +139,21 @@ private:
         double K = 0, cap_s = 0, cap_k = 0;
     };
 
+    void add_static_rotation(const ContactState& now, StaticSprings& all) const override
+    {
+        if (p.eta_r > 0 && p.relative_rolling) {
+            // τ = K κ⁻² Θ is κ⁻¹ times the force y = K κ⁻¹ Θ.
+            const double bound = 2 * p.eta_r * now.N;
+            all.lever = RollingLevers(now).L;
+            all.roll = {.K = 4 * p.eta_r * p.K_E, .bound_s = bound * p.mu_s, .bound_k = bound * p.mu_k};
+        }
+        if (p.eta_psi > 0 || p.E_star > 0) {
+            const BoundedSpring spring = spinning(now);
+            all.spin = {
+                .K = spring.K, .bound_s = spring.K * spring.cap_s, .bound_k = spring.K * spring.cap_k};
+        }
+    }
+
     /// Rolling of the dissertation preset                                                       Eqs. 4.6, 4.7
     BoundedSpring rolling(const ContactState& now, double kappa) const
     {
@@ -151,7 +171,8 @@ private:
         if (p.E_star > 0) {
             const double a = std::cbrt(3 * now.N / (4 * kappa * p.E_star));
             K = 0.5 * a * a * p.K_E;
-            per_newton = 1 / (p.K_E * a);
+            constexpr double full_slip = 3 * std::numbers::pi / 8;  // of the bound of the text
+            per_newton = (p.critical_spin ? full_slip : 1) / (p.K_E * a);
         } else {
             K = p.eta_psi * p.K_E / (kappa * kappa);
             per_newton = kappa / p.K_E;
@@ -255,8 +276,14 @@ std::shared_ptr<const FrictionModel> read_slide_roll_spin(dae::ObjectReader& o, 
     if (o.find("spin") != nullptr) {
         o.one_of("spin", {"hertz"},
                  {"Model of spinning resistance used instead of eta_psi. hertz: the torque of a Hertzian "
-                  "contact patch (Fang 2022, Sec. A.8).",
+                  "contact patch of radius a (Fang 2022, Sec. A.8), at most mu N a/2.",
                   R"("hertz")"});
+        p.critical_spin =
+            o.flag("critical",
+                   {"With \"spin\": \"hertz\" only. If true, the torque is at most 3 pi/16 mu N a, "
+                    "at which the whole patch slips under the pressure of Hertz's theory.",
+                    "true"},
+                   false);
         const std::optional<double> modulus = normal.modulus();
         p.E_star =
             modulus && !o.has("E_star")
@@ -285,7 +312,7 @@ const bool registered_slide_roll_spin = io::Registry<FrictionLaw>::add(
                     "This is the default law. At most one of eta_psi and spin may be given.",
                 .examples = {R"("mu_s": 0.5, "mu_k": 0.4, "K_E": 10000, "eta_r": 0.05)",
                              R"("mu_s": 0.5, "K_E": 10000, "spin": "hertz", "E_star": 1e7)"},
-                .rest = R"("dependentRequired": {"E_star": ["spin"]})"},
+                .rest = R"("dependentRequired": {"E_star": ["spin"], "critical": ["spin"]})"},
      .make = make_law<SlideRollSpin>,
      .read = read_slide_roll_spin});
 

@@ -55,8 +55,20 @@ public:
 
     const FrictionParameters p;
 
+    StaticSprings static_springs(const ContactState& now) const final
+    {
+        StaticSprings all;
+        if (!p.static_start) return all;
+        all.slide = {.K = p.K_E, .bound_s = p.mu_s * now.N, .bound_k = p.mu_k * now.N};
+        add_static_rotation(now, all);
+        return all;
+    }
+
 protected:
     explicit SlidingFriction(const FrictionParameters& p) : p(p) { p.validate(); }
+
+    /// Adds the springs of rolling and spinning to those that hold bodies at rest.
+    virtual void add_static_rotation(const ContactState& /*now*/, StaticSprings& /*all*/) const {}
 
     /// S ← S + Δs with |S| ≤ μ N / K_E                                                                Eq. 4.1
     void advance_sliding(const ContactState& now, Deflections& deflections) const

@@ -28,7 +28,13 @@ constexpr double m = 5, R = 0.2, N = m * 9.81, k = 2e5;
 
 FrictionParameters rubber()
 {
-    return {.mu_s = 0.25, .mu_k = 0.2, .K_E = 2e4, .zeta = 0.5, .eta_r = 0.05, .eta_psi = 0.05};
+    return {.mu_s = 0.25,
+            .mu_k = 0.2,
+            .K_E = 2e4,
+            .zeta = 0.5,
+            .eta_r = 0.05,
+            .eta_psi = 0.05,
+            .static_start = false};  // as a scene starts
 }
 
 std::shared_ptr<const NormalLaw> spring() { return std::make_shared<Hooke>(Hooke::with_restitution(k, 0.5)); }

@@ -29,7 +29,7 @@ const Vec3 semi_axes(4, 3, 2);
 
 FrictionParameters rubber(double eta_r = 0)
 {
-    return {.mu_s = 0.25, .mu_k = 0.2, .K_E = K_E, .eta_r = eta_r, .D_slide = K_D};
+    return {.mu_s = 0.25, .mu_k = 0.2, .K_E = K_E, .eta_r = eta_r, .D_slide = K_D, .static_start = false};
 }
 
 Shape sphere(double radius = R) { return {.surface = std::make_shared<Sphere>(radius)}; }
@@ -365,7 +365,8 @@ struct Egg {
         if (mu > 0)
             model.load(std::make_unique<EvolvingFriction>(
                 model, c,
-                friction_law("slide-roll-spin").make({.mu_s = mu, .mu_k = mu, .K_E = 1e4, .D_slide = 1e4})));
+                friction_law("slide-roll-spin")
+                    .make({.mu_s = mu, .mu_k = mu, .K_E = 1e4, .D_slide = 1e4, .static_start = false})));
         x.body.resize(1);
         Motion& egg = x.body[0];
         egg.A = lie::exp(Vec3(0, 0.6, 0));

@@ -215,6 +215,56 @@ std::vector<Criterion> criteria_of_orders(const std::vector<Series>& all)
     return checks;
 }
 
+/// Series whose fitted order is below the declared one by more than a half, and problems whose errors are
+/// near that of the reference solution for all schemes and steps
+void add_findings(const std::vector<Series>& all, const std::vector<Benchmark>& problems, StudyContext& s)
+{
+    constexpr double lower = 0.5;
+    std::vector<std::string> findings;
+    for (const Series& series : all) {
+        const ErrorRun& first = *series.front();
+        for (int n = norm::r; n <= norm::Q; ++n) {
+            const int declared = n == norm::Q ? first.scheme->order_lambda : first.scheme->order;
+            const double order = study.fit(series, static_cast<size_t>(n));
+            if (!(order < declared - lower)) continue;
+            findings.push_back(fmt::format("{} on {}: the order of {} is {:.2f}, and {} is declared",
+                                           first.scheme->name, first.c->problem.name,
+                                           norm::names[static_cast<size_t>(n)], order, declared));
+            s.warned("order_below_declared", findings.back());
+            break;
+        }
+    }
+    for (const Benchmark& c : problems) {
+        const auto is_at_floor = [&](const Series& series) {
+            return series.front()->c != &c ||
+                   std::all_of(series.begin(), series.end(), [](const ErrorRun* run) {
+                       return run->failed() || run->at_floor[norm::r] != 0;
+                   });
+        };
+        const auto is_of_reference = [&](const Series& series) {
+            return series.front()->c == &c &&
+                   std::any_of(series.begin(), series.end(), [&](const ErrorRun* run) {
+                       return !run->failed() &&
+                              run->error[norm::r] <= margin_of_reference * c.uncertainty.value[norm::r];
+                   });
+        };
+        if (!std::all_of(all.begin(), all.end(), is_at_floor) ||
+            std::none_of(all.begin(), all.end(), is_of_reference))
+            continue;
+        findings.push_back(
+            fmt::format("{}: no run has an error above ten times that of the reference solution, "
+                        "{:.1e} m by {}: it does not show an order; choose another by --reference",
+                        c.problem.name, c.uncertainty.value[norm::r], c.reference_name));
+        s.warned("reference_too_coarse", findings.back());
+    }
+    if (findings.empty()) return;
+    s.text << "\nfindings:\n";
+    for (const std::string& finding : findings) {
+        s.text << "  " << finding << '\n';
+        s.json["findings"].push_back(finding);
+    }
+}
+
 /// The problems, integrators and steps that are not named on the command line
 struct Defaults {
     std::vector<std::string> problems;
@@ -292,6 +342,7 @@ void convergence(StudyContext& s)
     s.table = columns.csv(runs);
     s.end_of_runs(run_pointers(runs));
     const auto check = [&] {
+        add_findings(all, problems, s);
         if (s.check) s.evaluate(criteria_of_orders(all));
     };
     if (short_form) {

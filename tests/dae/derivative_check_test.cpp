@@ -43,7 +43,7 @@ public:
     }
     Mat12 second_variation(const Arguments& x) const override
     {
-        return by.second * Constraint::second_variation(x, 0);
+        return by.second * Block::second_variation(x);
     }
 
 private:

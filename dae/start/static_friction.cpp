@@ -258,15 +258,35 @@ private:
         return out;
     }
 
-    /// The solution g of smallest norm of √K J M̂⁻¹ Jᵀ √K g = r, or of its least-squares problem
+    /// Largest K J M⁻¹ Jᵀ of a row, for free bodies: a bound of that with constraints
+    double largest_mobility() const
+    {
+        double largest = 0;
+        for_rows(held, [&](const Held& one, std::size_t k, Eigen::Index) {
+            double mobility = 0;
+            for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], one.spring.row[k],
+                       [&](int body, const Vec3& r, const Vec3& pi) {
+                           mobility += r.squaredNorm() / model.mass().m[body] +
+                                       pi.dot(model.mass().J_bar[body].inverse() * pi);
+                       });
+            largest = std::max(largest, mobility * one.spring.row[k].stiffness);
+        });
+        return largest;
+    }
+
+    /// The solution g of smallest norm of S g = r with S = √K J M̂⁻¹ Jᵀ √K, or of its least-squares problem: the
+    /// part of r along motions that drivers prescribe remains
     VectorXd conjugate_residuals(VectorXd r)
     {
-        constexpr double rounding = 1e-14;
+        constexpr double rounding = 1e-14, of_S = 1e-11, null_part = 1e-8;
+        const double size = r.norm();
         VectorXd g = VectorXd::Zero(r.size());
         VectorXd p = r, Sr = multiply(r), Sp = Sr;
-        const double first = Sr.norm();
+        const double first = Sr.norm(), scale = of_S * largest_mobility();
         double product = r.dot(Sr);
-        for (Eigen::Index n = 0; n < 2 * r.size() + 10 && product > 0 && Sr.norm() > rounding * first; ++n) {
+        for (Eigen::Index n = 0; n < 2 * r.size() + 10 && product > 0 && Sr.norm() > rounding * first &&
+                                 Sr.norm() > scale * r.norm();
+             ++n) {
             const double alpha = product / Sp.squaredNorm();
             g += alpha * p;
             r -= alpha * Sp;
@@ -276,10 +296,12 @@ private:
             Sp = Sr + next / product * Sp;
             product = next;
         }
+        // What remains of r is its part r_0 with S r_0 = 0. All directions p have a multiple of it, and so has g.
+        if (r.norm() > null_part * size) g -= g.dot(r) / r.squaredNorm() * r;
         return g;
     }
 
-    /// Corrects the forces of the springs that hold. Returns the change relative to all forces.
+    /// Corrects the forces of the springs that hold. Returns the change relative to all forces and bounds.
     double correct()
     {
         const VectorXd g = conjugate_residuals(scaled_accelerations());
@@ -288,8 +310,11 @@ private:
             one.f[static_cast<Eigen::Index>(k)] += one.root() * g[at];
             change += g[at] * g[at];
         });
-        // in the metric of the elastic energy
-        for (const Held& one : held) all += one.f.squaredNorm() / one.spring.row[0].stiffness;
+        // In the metric of the elastic energy. Without a load the forces are rounding errors.
+        for (const Held& one : held) {
+            const double force = std::max(one.f.norm(), one.spring.bound);
+            all += force * force / one.spring.row[0].stiffness;
+        }
         return all > 0 ? std::sqrt(change / all) : 0;
     }
 

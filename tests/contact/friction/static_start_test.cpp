@@ -257,6 +257,49 @@ TEST_CASE("the static start holds bodies of all sizes", "[contact][friction]")
     }
 }
 
+TEST_CASE("friction does not hold a body whose motion is prescribed", "[contact][friction]")
+{
+    // A driver accelerates the box along the floor from rest; a second box beside it is held by friction.
+    const std::string
+        box = R"({{"name": "{0}", "mass": 1, "inertia": [1, 1, 1], "r": [0, {1}, 0.1]}})",
+        contact = R"({{"name": "c-{0}", "body_i": "{0}", "body_j": "ground", )"
+                  R"("surface_i": {{"type": "sphere", "radius": 0.1}}, "surface_j": {{"type": "plane"}}, )"
+                  R"("normal": {{"type": "given", "force": 10}}, "friction": {{{1}}}}})",
+        rail = R"({{"type": "translational", "name": "rail-{0}", "body_i": "ground", "body_j": "{0}", )"
+               R"("s_bar_p_i": [0, {1}, 0.1], "axis_bar_i": [1, 0, 0], "axis_bar_j": [1, 0, 0]}})";
+    const dae::Description d = started(
+        R"({"hilda_model": 1, "name": "boxes", "gravity": [2, 0, -9.81], "bodies": [)" +
+        fmt::format(fmt::runtime(box), "driven", 0) + ", " + fmt::format(fmt::runtime(box), "held", 1) +
+        R"(], "constraints": [)" + fmt::format(fmt::runtime(rail), "driven", 0) + ", " +
+        fmt::format(fmt::runtime(rail), "held", 1) +
+        R"(, {"type": "CD", "name": "drive", "body_i": "ground", "body_j": "driven", "c": [1, 0, 0], "s_bar_p_i": [0, 0, 0.1], )"
+        R"("f": "1.5*t^2"}], "contacts": [)" +
+        fmt::format(fmt::runtime(contact), "driven", slide) + ", " +
+        fmt::format(fmt::runtime(contact), "held", slide) + "]}");
+    CHECK(d.warnings.empty());
+    CHECK(d.x.body[0].rddot.x() == Approx(3));
+    CHECK(std::abs(d.x.body[1].rddot.x()) < 1e-9);
+    const auto friction = [&](std::size_t k) {
+        return dynamic_cast<const contact::TrackedForce&>(*d.model->forces()[k]).friction(d.x).F_E;
+    };
+    CHECK(friction(0).norm() < 1e-9);
+    CHECK(friction(1).x() == Approx(-2));
+}
+
+TEST_CASE("a ball at rest on a floor has no friction and no warning", "[contact][friction]")
+{
+    for (const double turn : {0., 0.3, 1.1})
+        for (const char* const normal : {"hooke", "constraint"}) {
+            // Gravity is along the normal up to rounding errors.
+            const dae::Description d =
+                started(ball(1e-17, normal, R"({"eta_r": 0.2, "eta_psi": 0.1, )" + slide + "}", false, turn));
+            CAPTURE(turn, normal);
+            CHECK(d.warnings.empty());
+            const auto& force = dynamic_cast<const contact::TrackedForce&>(*d.model->forces().back());
+            CHECK(force.friction(d.x).F.norm() < 1e-12 * m * g);
+        }
+}
+
 TEST_CASE("springs of the dissertation preset start unstretched", "[contact][friction]")
 {
     const dae::Description d =

@@ -194,7 +194,7 @@ struct Outcome {
     long steps;
 };
 
-Outcome run(const Problem& p, const char* scheme, lie::Settings settings)
+Outcome run(const Problem& p, const char* scheme, const lie::Settings& settings)
 {
     dae::Description d = dae::read_model(p.model, p.name);
     dae::start(*d.model, d.x);

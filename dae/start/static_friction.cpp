@@ -274,8 +274,8 @@ private:
         return largest;
     }
 
-    /// The solution g of smallest norm of S g = r with S = √K J M̂⁻¹ Jᵀ √K, or of its least-squares problem: the
-    /// part of r along motions that drivers prescribe remains
+    /// The solution g of smallest norm of S g = r with S = √K J M̂⁻¹ Jᵀ √K, or of its least-squares problem:
+    /// the part of r along motions that drivers prescribe remains
     VectorXd conjugate_residuals(VectorXd r)
     {
         constexpr double rounding = 1e-14, of_S = 1e-11, null_part = 1e-8;
@@ -296,7 +296,8 @@ private:
             Sp = Sr + next / product * Sp;
             product = next;
         }
-        // What remains of r is its part r_0 with S r_0 = 0. All directions p have a multiple of it, and so has g.
+        // What remains of r is its part r_0 with S r_0 = 0. All directions p have a multiple of it, and g
+        // has one.
         if (r.norm() > null_part * size) g -= g.dot(r) / r.squaredNorm() * r;
         return g;
     }

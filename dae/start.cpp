@@ -337,7 +337,6 @@ StartReport start(Model& model, State& x, const StartOptions& options)
         report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
-    set_static_pairs(model, K, x);
     const StaticStart friction = set_static_friction(model, K, x);
     if (!friction.has_converged)
         report.warnings.emplace_back(
@@ -360,7 +359,6 @@ void set_start_accelerations(const Model& model, State& x)
 {
     lie::Saddle K(model, lie::Metric::mass, start_solver(model));
     solve_with_internal_states(model, K, x);
-    set_static_pairs(model, K, x);
     set_static_friction(model, K, x);
 }
 

@@ -4,7 +4,9 @@
 #include "lie/steps/cubic_path.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace hilda::contact {
 
@@ -13,7 +15,11 @@ namespace {
 constexpr double shortest_advance = 1e-3;  // relative to the smaller size
 constexpr int most_evaluations = 10000;
 
-double turn(const Motion& a, const Motion& b) { return lie::log(a.A.transpose() * b.A).norm(); }
+/// Angle between two orientations: |B - A| = 2 √2 sin(angle/2)
+double turn(const Motion& a, const Motion& b)
+{
+    return 2 * std::asin(std::min(1., (b.A - a.A).norm() / (2 * std::numbers::sqrt2)));
+}
 
 /// Bound of the path of the centres relative to each other: the control polygon of the cubic
 double path(const Motion& i_begin, const Motion& i_end, const Motion& j_begin, const Motion& j_end, double h)

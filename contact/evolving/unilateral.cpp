@@ -88,10 +88,10 @@ bool UnilateralStep::overlaps(const TrackedContact& c, const State& x) const
 Passage UnilateralStep::passage(const TrackedContact& c, const State& from, const State& to) const
 {
     const EvolvingContact& at = *c.contact;
-    const Motion &i = dae::motion(from, at.i), &j = dae::motion(from, at.j);
-    const ContactPoint points = at.contact_point(model.arguments(at, from));
-    return Passage(i, dae::motion(to, at.i), j, dae::motion(to, at.j), to.t - from.t,
-                   (points.C_i - i.r).norm(), (points.C_j - j.r).norm());
+    const double* const alpha = model.arguments(at, from).alpha;
+    return Passage(dae::motion(from, at.i), dae::motion(to, at.i), dae::motion(from, at.j),
+                   dae::motion(to, at.j), to.t - from.t, Vec3::Map(alpha).norm(),
+                   Vec3::Map(alpha + 3).norm());
 }
 
 /// Updates the nearest points of the inactive contacts after a step. After a long motion Newton's method

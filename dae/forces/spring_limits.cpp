@@ -13,6 +13,11 @@ constexpr double rounding = 1e-10;  // of W, relative to that of free bodies: th
 
 }  // namespace
 
+double free_mobility(const lie::Mass& mass, int body, const Vec3& r, const Vec3& pi)
+{
+    return r.squaredNorm() / mass.m[body] + pi.dot(mass.J_bar[body].inverse() * pi);
+}
+
 void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
 {
     const lie::Mass& mass = model.mass();
@@ -35,7 +40,7 @@ void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
             const auto set = [&](int body, const Vec3& r, const Vec3& pi) {
                 if (body == ground) return;
                 b.segment<3>(6 * body) = r, b.segment<3>(6 * body + 3) = pi;
-                free += r.squaredNorm() / mass.m[body] + pi.dot(mass.J_bar[body].inverse() * pi);
+                free += free_mobility(mass, body, r, pi);
             };
             set(i, row.r_i, row.pi_i);
             set(j, row.r_j, row.pi_j);

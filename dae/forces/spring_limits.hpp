@@ -6,13 +6,18 @@
 #include "lie/state.hpp"
 
 namespace hilda::lie {
+struct Mass;
 class Saddle;
-}
+}  // namespace hilda::lie
 
 namespace hilda::dae {
 
 class Model;
 using lie::State;
+using lie::Vec3;
+
+/// Inverse effective mass of a free body along a row (r, pi): r · r/m + pi · J̄⁻¹ pi
+double free_mobility(const lie::Mass& mass, int body, const Vec3& r, const Vec3& pi);
 
 /// Sets Force::spring_limits of all forces from their spring_rows() in the state x. K is factored at x.
 ///

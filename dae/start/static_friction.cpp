@@ -3,6 +3,7 @@
 
 #include "dae/constraints/contact_constraint.hpp"
 #include "dae/force.hpp"
+#include "dae/forces/spring_limits.hpp"
 #include "dae/model.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace hilda::dae {
 
@@ -49,7 +51,7 @@ public:
     void add(int body, const Vec3& r, const Vec3& pi)
     {
         rate += r.dot(x.body[body].rdot) + pi.dot(x.body[body].omega_bar);
-        mobility += r.squaredNorm() / model.mass().m[body] + pi.dot(model.mass().J_bar[body].inverse() * pi);
+        mobility += free_mobility(model.mass(), body, r, pi);
     }
     bool within(double stiffness, double bound)
     {
@@ -266,8 +268,7 @@ private:
             double mobility = 0;
             for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], one.spring.row[k],
                        [&](int body, const Vec3& r, const Vec3& pi) {
-                           mobility += r.squaredNorm() / model.mass().m[body] +
-                                       pi.dot(model.mass().J_bar[body].inverse() * pi);
+                           mobility += free_mobility(model.mass(), body, r, pi);
                        });
             largest = std::max(largest, mobility * one.spring.row[k].stiffness);
         });
@@ -350,10 +351,6 @@ private:
     int read_springs = 0;
 };
 
-}  // namespace
-
-namespace {
-
 /// The bounded pairs of a contact that are at rest, and those of them below their bound
 struct PairsAtRest {
     std::array<bool, Constraint::max_velocity_rows / 2> at_rest{}, sticks{};
@@ -389,25 +386,25 @@ PairsAtRest pairs_at_rest(const Model& model, const ContactConstraint& c, const 
     return out;
 }
 
-}  // namespace
-
 void set_static_pairs(const Model& model, lie::Saddle& K, State& x)
 {
     // The start has given the rows a compliance c, so that C v̇ = γ + c λ. Corrections δ with C δ_v̇ - c
     // δ_λ = -c λ make them rigid.
     constexpr int corrections = 4;
+    std::vector<std::pair<const ContactConstraint*, PairsAtRest>> contacts;
+    for (const auto& constraint : model.general_constraints())
+        if (const ContactConstraint* const c = constraint->as_contact();
+            c != nullptr && c->bounded_pairs() > 0 && !Model::inactive(*c, x))
+            contacts.emplace_back(c, pairs_at_rest(model, *c, x));
+    if (contacts.empty()) return;
     const lie::Rows& rows = K.rows();
     std::vector<char> is_rigid(static_cast<std::size_t>(rows.rows()), 0);
-    for (const auto& constraint : model.general_constraints()) {
-        const ContactConstraint* const c = constraint->as_contact();
-        if (c == nullptr || c->bounded_pairs() == 0 || Model::inactive(*c, x)) continue;
-        const PairsAtRest pairs = pairs_at_rest(model, *c, x);
+    for (const auto& [c, pairs] : contacts) {
         const auto first = static_cast<std::size_t>(Model::place(*c).velocity_row),
                    count = static_cast<std::size_t>(c->bounded_pairs());
         for (std::size_t p = 0; p < count; ++p)
             is_rigid[first + 2 * p] = is_rigid[first + 2 * p + 1] = pairs.sticks[p] ? 1 : 0;
     }
-    if (std::none_of(is_rigid.begin(), is_rigid.end(), [](char rigid) { return rigid != 0; })) return;
     VectorXd lambda = x.lambda, b(K.size());
     for (int n = 0; n < corrections; ++n) {
         b.setZero();
@@ -422,18 +419,18 @@ void set_static_pairs(const Model& model, lie::Saddle& K, State& x)
             x.body[i].rddot += b.segment<3>(at), x.body[i].omegadot_bar += b.segment<3>(at + 3);
         }
     }
-    for (const auto& constraint : model.general_constraints()) {
-        const ContactConstraint* const c = constraint->as_contact();
-        if (c == nullptr || c->bounded_pairs() == 0 || Model::inactive(*c, x)) continue;
-        const PairsAtRest pairs = pairs_at_rest(model, *c, x);
+    for (const auto& [c, pairs] : contacts)
         c->set_static_pairs(model.arguments(*c, x), pairs.at_rest.data(),
                             x.internal_state.data() + Model::place(*c).internal_state);
-    }
 }
+
+}  // namespace
 
 StaticStart set_static_friction(const Model& model, lie::Saddle& K, State& x)
 {
-    return StaticFriction(model, K, x).solve();
+    StaticStart out = StaticFriction(model, K, x).solve();
+    set_static_pairs(model, K, x);  // after it, because it sets all internal states to those of a start
+    return out;
 }
 
 }  // namespace hilda::dae

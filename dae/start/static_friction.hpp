@@ -5,7 +5,6 @@
 
 #include "lie/state.hpp"
 
-#include <string>
 #include <vector>
 
 namespace hilda::lie {
@@ -22,6 +21,12 @@ struct Slipping {
     int force = 0;                 ///< number in Model::forces()
     const char* name = "";         ///< of the spring: Force::StaticSpring::name
     double needed = 0, bound = 0;  ///< force or torque that would hold, and its largest value [N, N m]
+};
+
+/// Result of set_static_friction()
+struct StaticStart {
+    std::vector<Slipping> slipping;  ///< forces that cannot hold
+    bool has_converged = true;       ///< false: x has remained without deflections
 };
 
 /// Stretches the springs of friction whose bodies are at rest relative to each other such that they hold
@@ -46,14 +51,9 @@ struct Slipping {
 ///
 /// x: state of a start with internal states, accelerations and multipliers, with K factored at x. All three
 /// are changed.
-struct StaticStart {
-    std::vector<Slipping> slipping;  ///< forces that cannot hold
-    bool has_converged = true;       ///< false: x has remained without deflections
-};
+///
+/// Implicit friction has no forces of its own: the elastic displacements of the bounded pairs of contacts at
+/// rest become those of the multipliers of the start, which are the forces of sticking.
 StaticStart set_static_friction(const Model& model, lie::Saddle& K, State& x);
-
-/// The same for the bounded pairs of contacts in x: their elastic displacements become those of the
-/// multipliers of the start, which are the forces of sticking.
-void set_static_pairs(const Model& model, lie::Saddle& K, State& x);
 
 }  // namespace hilda::dae

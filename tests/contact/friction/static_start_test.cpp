@@ -141,6 +141,45 @@ TEST_CASE("a body above the limit slides from the start, with a warning", "[cont
     }
 }
 
+TEST_CASE("implicit friction above the limit slides from the start", "[contact][friction]")
+{
+    const double theta = std::atan(0.6), a = g * (std::sin(theta) - 0.2 * std::cos(theta)), t = 0.3;
+    for (const Case& of : sliding) {
+        if (of.law.find("implicit") == std::string::npos) continue;
+        const dae::Description d = started(ball(theta, of.normal, of.law, true));
+        const lie::State x = tests::march(*d.model, d.x, "rA-half-1-kick", t, 1e-4);
+        CHECK(x.body[0].r.x() == Approx(0.5 * a * t * t).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("implicit and other friction hold bodies of one model", "[contact][friction]")
+{
+    const double theta = std::atan(0.45);
+    const auto part = [](const char* name, int y, const std::string& friction) {
+        return std::pair(
+            fmt::format(R"({{"name": "{}", "mass": 2, "inertia": [1, 1, 1], "r": [0, {}, 0.05]}})", name, y),
+            fmt::format(R"({{"name": "c-{0}", "body_i": "{0}", "body_j": "ground", )"
+                        R"("surface_i": {{"type": "sphere", "radius": 0.05}}, "surface_j": {{"type": )"
+                        R"("plane"}}, "normal": {{"type": "constraint"}}, "friction": {1}}})",
+                        name, friction));
+    };
+    // Balls that neither slide nor roll
+    const std::string resists = R"("eta_r": 0.5, )" + slide + "}";
+    const auto implicit = part("implicit", 0, R"({"law": "implicit", )" + resists),
+               tracked = part("tracked", 1, "{" + resists);
+    const dae::Description d = started(fmt::format(
+        R"({{"hilda_model": 1, "name": "two", "gravity": [{:.17g}, 0, {:.17g}], "bodies": [{}, {}], "contacts": [{}, {}]}})",
+        g * std::sin(theta), -g * std::cos(theta), implicit.first, tracked.first, implicit.second,
+        tracked.second));
+    CHECK(d.warnings.empty());
+    double largest = 0;
+    tests::march(*d.model, d.x, "rA-half-1-kick", 0.2, 1e-4, [&](const lie::State& node) {
+        for (std::size_t b = 0; b < 2; ++b)
+            largest = std::max(largest, (node.body[b].r - d.x.body[b].r).norm());
+    });
+    CHECK(largest < 1e-6 * deflection);
+}
+
 TEST_CASE("a ball released on a slope has the force of rolling from the start", "[contact][friction]")
 {
     const double theta = std::atan(0.9), t = 0.2;

@@ -21,6 +21,7 @@ struct Scheme;
 namespace hilda::dae {
 
 using lie::LoadEvaluation;
+class DerivativeFindings;
 
 /// An applied load on one or more bodies. Derive from Force to add a force law.
 ///
@@ -160,6 +161,10 @@ public:
     /// Sets the derivatives in the state x and returns true. The default, false, is for forces without closed
     /// formulas: the model computes differences. The function must not allocate memory.
     virtual bool load_derivatives(const State& /*x*/, LoadDerivatives& /*out*/) const { return false; }
+
+    /// Compares the functions of the parts of this force, such as surfaces and contact laws, with
+    /// differences. The load derivatives are compared without it. See dae/start/derivative_check.hpp.
+    virtual void check_derivatives(const State& /*x*/, DerivativeFindings& /*out*/) const {}
 
     /// Highest number of the bodies on which the force acts
     virtual int last_body() const = 0;

@@ -78,8 +78,10 @@ public:
 
     const std::shared_ptr<const NormalLaw> law;
 
-private:
+    /// Input of the normal law at a contact point
     NormalInput normal_input(const ContactPoint& contact_point, const Motion& bi, const Motion& bj) const;
+
+private:
     NormalSupport normal_support(const ContactState& now, const Motion& bi, const Motion& bj) const;
     ContactPoint detect(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact_force.hpp"
 
+#include "contact/derivative_check.hpp"
 #include "contact/detection/passage.hpp"
 #include "contact/evolving/contact.hpp"
 #include "contact/internal_state.hpp"
@@ -78,16 +79,32 @@ std::string ContactForce::start_error(const lie::State& x) const
     return contact.start_error(motion(x, i), motion(x, j));
 }
 
-double ContactForce::stable_step(const lie::State& x, lie::LoadEvaluation evaluation) const
+ContactState ContactForce::loaded_state(const lie::State& x) const
 {
-    const Motion &bi = motion(x, i), &bj = motion(x, j);
     double weight = 0;  // weight of all bodies: the largest static load of the contact
     for (const double m : model.mass().m) weight += m * model.gravity.norm();
+    return contact.state_at_largest_compression(motion(x, i), motion(x, j), saved_history(x), weight);
+}
+
+double ContactForce::stable_step(const lie::State& x, lie::LoadEvaluation evaluation) const
+{
     try {
-        return contact.stable_step(contact.state_at_largest_compression(bi, bj, saved_history(x), weight), bi,
-                                   bj, near_contacts(x), lie::damping_factor(evaluation));
+        return contact.stable_step(loaded_state(x), motion(x, i), motion(x, j), near_contacts(x),
+                                   lie::damping_factor(evaluation));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
+    }
+}
+
+void ContactForce::check_derivatives(const lie::State& x, dae::DerivativeFindings& out) const
+{
+    TrackedForce::check_derivatives(x, out);
+    const NormalLaw& law = *contact.law;
+    if (!is_active(x) || !out.is_next(typeid(law))) return;
+    try {
+        check_normal_law(law, contact.normal_input(loaded_state(x).contact_point, motion(x, i), motion(x, j)),
+                         label(), out);
+    } catch (const lie::NumericalFailure&) {  // no contact point
     }
 }
 

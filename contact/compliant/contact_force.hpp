@@ -30,6 +30,8 @@ public:
     bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const override;
     /// Throws NumericalFailure "contact_missed" if the bodies pass through each other within the step.
     void check_step(const lie::State& before, const lie::State& after) const override;
+    /// Of the normal law as well, at the largest compression expected
+    void check_derivatives(const lie::State& x, dae::DerivativeFindings& out) const override;
     /// Overlap at the last accepted node [m]; 0 while the surfaces are apart
     double overlap(const lie::State& x) const;
     /// CompliantContact::relative_overlap() at the last accepted node
@@ -45,6 +47,7 @@ public:
 private:
     const FrictionPair& pair() const override { return contact; }
     ContactState evaluate(const lie::State& x, const ContactHistory& history) const override;
+    ContactState loaded_state(const lie::State& x) const override;
     bool applies_normal_force() const override { return true; }
     bool is_near_contact(const lie::State& x) const override;
     void save(const Instant& now, lie::State& x) const override;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evolving/contact.hpp"
 
+#include "contact/derivative_check.hpp"
 #include "contact/tangent_basis.hpp"
 #include "lie/check.hpp"
 
@@ -319,6 +320,11 @@ ContactPoint EvolvingContact::contact_point(const Arguments& x) const
     contact_point.gap = contact_point.n.dot((x.bi.r - x.bj.r) + (side_i.arm - side_j.arm));
     contact_point.K_i = side_i.shape_operator(), contact_point.K_j = side_j.shape_operator();
     return contact_point;
+}
+
+void EvolvingContact::check_derivatives(dae::DerivativeFindings& out) const
+{
+    check_surfaces(shape_i, shape_j, label(), out);
 }
 
 void EvolvingContact::update_alpha(const Arguments& x, bool global_search, double* alpha) const

@@ -124,6 +124,7 @@ public:
     unsigned nonzero(int row) const override;
     void set_pairs(const Arguments& x, lie::BoundedPair* out) const override;
     void set_static_pairs(const Arguments& x, const bool* at_rest, double* internal_state) const override;
+    void check_derivatives(dae::DerivativeFindings& out) const override;
     void update_alpha(const Arguments& x, bool global_search, double* alpha) const override;
     int update_mode(const Arguments& x, bool start, double* internal_state) const override;
     std::string start_error(const Arguments& x) const override;

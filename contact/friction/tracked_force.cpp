@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/friction/tracked_force.hpp"
 
+#include "contact/derivative_check.hpp"
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
 
@@ -231,6 +232,17 @@ void TrackedForce::set_static_forces(lie::State& x, const StaticForce* forces) c
     d.Psi = deflection(law.spin, forces[2])[0];
     set(d.slide, forces[0]), set(d.roll_i, forces[1]), set(d.spin, forces[2]);
     save(now, x);
+}
+
+void TrackedForce::check_derivatives(const lie::State& x, dae::DerivativeFindings& out) const
+{
+    check_surfaces(pair().i, pair().j, label(), out);
+    const FrictionModel& friction = law();
+    if (!is_active(x) || !out.is_next(typeid(friction))) return;
+    try {
+        check_friction_law(friction, loaded_state(x), label(), out);
+    } catch (const lie::NumericalFailure&) {  // no contact point
+    }
 }
 
 bool TrackedForce::is_touching(const lie::State& x) const

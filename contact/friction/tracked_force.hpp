@@ -38,6 +38,9 @@ public:
     int static_springs(const lie::State& x, StaticSpring* out) const override;
     void set_static_forces(lie::State& x, const StaticForce* forces) const override;
 
+    /// Of the surfaces and the friction law
+    void check_derivatives(const lie::State& x, dae::DerivativeFindings& out) const override;
+
     /// The contact history stored in x
     ContactHistory saved_history(const lie::State& x) const;
     /// State of the contact at x, and the history advanced to x
@@ -73,6 +76,8 @@ protected:
     /// Rates for the dampers. Default: the rates at this instant from the velocities of the bodies, see
     /// rates().
     virtual Rates damper_rates(const Instant& now, const lie::State& x) const;
+    /// The state in which the friction law is compared with differences
+    virtual ContactState loaded_state(const lie::State& x) const { return at(x).contact_state; }
     /// True if the normal force is part of this load; false if a constraint supplies it
     virtual bool applies_normal_force() const = 0;
     /// True if the bodies are in contact or close to it; used to count the contacts of a body

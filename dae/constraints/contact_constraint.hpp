@@ -10,6 +10,8 @@
 
 namespace hilda::dae {
 
+class DerivativeFindings;
+
 /// The functions that a constraint needs beyond those of Constraint if its Size has algebraic variables,
 /// modes or bounded pairs.
 class ContactConstraint : public Constraint {
@@ -49,6 +51,9 @@ public:
     virtual void set_static_pairs(const Arguments& /*x*/, const bool* /*at_rest*/,
                                   double* /*internal_state*/) const
     {}
+
+    /// Compares the functions of the surfaces with differences, see dae/start/derivative_check.hpp.
+    virtual void check_derivatives(DerivativeFindings& /*out*/) const {}
 
     /// Violation of an active constraint by the positions or velocities of a start
     struct Violation {

@@ -2,21 +2,19 @@
 #include "dae/start/derivative_check.hpp"
 
 #include "dae/block.hpp"
+#include "dae/constraints/contact_constraint.hpp"
 #include "dae/model.hpp"
 #include "dae/start/differences.hpp"
 #include "lie/system.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
-#include <typeindex>
 
 namespace hilda::dae {
 
 namespace {
 
-constexpr int of_each_class = 20;
 constexpr double first_step = 2e-3;  // [m, rad, s], the largest of differences
 constexpr double later = 0.0123;     // [s] after the start, where formulas of time often have a kink
 constexpr double most = 1e-4;        // largest difference, relative to the largest number
@@ -240,25 +238,29 @@ State moved(State x)
 
 std::vector<std::string> wrong_derivatives(const Model& model, const lie::State& x)
 {
-    std::vector<std::string> out;
-    std::map<std::type_index, int> compared;
-    const auto is_next = [&](const auto& of) { return ++compared[typeid(of)] <= of_each_class; };
+    DerivativeFindings out;
     for (const Model::Row& row : model.all_rows()) {
         const Block& block = row.active_block(x);
-        if (!is_next(block)) continue;
+        if (!out.is_next(typeid(block))) continue;
         std::vector<std::string> found;
         ConstraintCheck(block, Model::arguments(block, x), found).run();
-        for (std::string& text : found) out.push_back(model.name_of(row) + text.substr(text.find(": ")));
+        for (const std::string& text : found) out.add(model.name_of(row) + text.substr(text.find(": ")));
     }
-    for (const auto& c : model.general_constraints())
-        if (c->algebraic_variables() == 0 && !Model::inactive(*c, x) && is_next(*c))
-            ConstraintCheck(*c, model.arguments(*c, x), out).run();
+    for (const auto& c : model.general_constraints()) {
+        const Constraint& constraint = *c;
+        if (const ContactConstraint* const contact = c->as_contact()) contact->check_derivatives(out);
+        if (c->algebraic_variables() == 0 && !Model::inactive(*c, x) && out.is_next(typeid(constraint)))
+            ConstraintCheck(*c, model.arguments(*c, x), out.lines).run();
+    }
     lie::LoadVariation work;
     work.plus = work.minus = lie::Loads(model.bodies());
     const State near = work.x = moved(x);
-    for (const auto& force : model.forces())
-        if (is_next(*force)) check_loads(*force, near, work, out);
-    return out;
+    for (const auto& f : model.forces()) {
+        const Force& force = *f;
+        force.check_derivatives(x, out);
+        if (out.is_next(typeid(force))) check_loads(force, near, work, out.lines);
+    }
+    return std::move(out.lines);
 }
 
 }  // namespace hilda::dae

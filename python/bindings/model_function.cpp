@@ -38,9 +38,8 @@ void ModelFunctions::clear()
 void read_array(const py::handle& object, const char* what, py::ssize_t rows, py::ssize_t columns,
                 double* out)
 {
-    const auto given = py::array::ensure(object);
-    if (!given)
-        throw py::error_already_set();  // of the conversion, such as one of lists of different lengths
+    // Throws the exception of the conversion, such as one of lists of different lengths.
+    const py::array given = py::reinterpret_borrow<py::object>(object);
     if (std::string_view("biuf").find(given.dtype().kind()) == std::string_view::npos)
         throw py::type_error(fmt::format("{} must be an array of numbers, got {}", what,
                                          py::isinstance<py::array>(object)

@@ -2,6 +2,7 @@
 /// Surfaces in model files: reading, errors with their positions, and the canonical text.
 
 #include "contact/surface_types.hpp"
+#include "contact/derivative_check.hpp"
 #include "contact/surfaces/cone.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/paraboloid.hpp"
@@ -97,6 +98,17 @@ TEST_CASE("all surface types are read and have a stable canonical text", "[conta
         CHECK(twice.shape.position == once.shape.position);
         CHECK(twice.shape.orientation == once.shape.orientation);
         CHECK(lie::orthogonality_error(once.shape.orientation) < 1e-15);
+    }
+}
+
+TEST_CASE("the functions of all surface types agree with differences", "[contact][surface_types]")
+{
+    for (const auto& [type, example] : examples) {
+        INFO(type);
+        DerivativeFindings out;
+        const Shape shape = read(example).shape;
+        check_surfaces(shape, Shape{.surface = std::make_shared<Sphere>(1)}, "contact", out);
+        CHECK(out.lines == std::vector<std::string>());
     }
 }
 

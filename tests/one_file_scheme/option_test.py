@@ -76,6 +76,14 @@ def main():
         call("collect", "s1", "s2", "--output", "all", "--no-plot")
         expect(settings("all/study.json")["settings"]["damping"] == 3, "study.json")
 
+        # with damping the scheme does not converge to the motion: its order is not the declared one
+        order = ["study", "convergence", "--problem", "double_pendulum", "--integrator", "demo-kick", "--steps", "4e-3,2e-3,1e-3",
+                 "--end", "0.5", "--quiet", "--no-plot"]
+        for damping, below in (("0", False), ("3", True)):
+            call(*order, "--damping", damping, "--output", f"order{damping}")
+            expect(("and 1 is declared" in (here / f"order{damping}/study.json").read_text()) == below,
+                   f"the finding of a study with --damping {damping}")
+
 
 if __name__ == "__main__":
     main()

@@ -152,6 +152,7 @@ class Constraints(unittest.TestCase):
         for keys, kind, text in (({"rows": 2}, ValueError, r"phi must have the shape \(2,\), got \(3,\)"),
                                  ({"phi": lambda x: [0, np.nan, 0]}, ValueError, "phi is not finite: component 1 is nan"),
                                  ({"phi": lambda x: "x"}, TypeError, "phi must be an array of numbers, got str"),
+                                 ({"phi": lambda x: [[1], [2, 3], 4]}, ValueError, "inhomogeneous shape"),
                                  ({"variation": lambda x: np.zeros((3, 6))}, TypeError, r"must return a tuple \(C_i, C_j\)"),
                                  ({"variation": lambda x: (np.zeros((3, 6)), np.zeros((3, 3)))}, ValueError, r"C_j must have the shape \(3, 6\), got \(3, 3\)"),
                                  ({"rows": 9}, hilda.InvalidInput, "rows must be from 1 to 8, got 9"),
@@ -255,6 +256,13 @@ class Surfaces(unittest.TestCase):
         class Wrong(ConvexBall):
             def gradient(self, a):
                 return a[:2]
+
+        class Flatter(ConvexBall):
+            def hessian(self, a):
+                return 0.5 * super().hessian(a)
+
+        with self.assertWarnsRegex(hilda.SimulationWarning, r"surface 'Flatter': entry .* of the Hessian is 5, not 10"):
+            rolling(Flatter(0.1), **COMPLIANT).run(end=0.01)
 
         with self.assertRaisesRegex(ValueError, r"gradient must have the shape \(3,\), got \(2,\)") as raised:
             rolling(Wrong(0.1), **COMPLIANT).run()

@@ -175,8 +175,12 @@ TEST_CASE("a load that overflows ends the run with the name of the body, and no 
                                                          {"torque", "1e200"},
                                                          {"torque", "\"exp(1e5*(t-0.01))\""}};
     for (const auto& [type, load] : loads) {
-        model(type, load);
         for (const hilda::lie::Scheme& scheme : hilda::lie::schemes()) {
+            // An adaptive scheme follows the growth with many steps: a faster one.
+            std::string formula = load;
+            if (const size_t rate = formula.find("1e5"); scheme.adaptive && rate != std::string::npos)
+                formula.replace(rate, 3, "1e7");
+            model(type, formula);
             const Ended ended = call(in, {"run", "spin.json", "--integrator", scheme.name, "--interval",
                                           "1e-3", "--quiet", "--output", "a", "--force"});
             CAPTURE(type, load, scheme.name, ended.err);

@@ -47,14 +47,27 @@ Vec3 origin_near(const lie::State& x)
     return centre.array().round();
 }
 
+/// The geometric mean of the largest radii of gyration of the bodies [m], rounded to a power of two; 1 in the
+/// range of the usual mechanisms
+double typical_length(const lie::Mass& mass)
+{
+    constexpr double usual = 100;  // [m], and its inverse
+    double mean = 0;               // of log2 ρ
+    for (size_t b = 0; b < mass.m.size(); ++b)
+        mean += 0.5 * std::log2(mass.J_bar[b].diagonal().maxCoeff() / mass.m[b]) /
+                static_cast<double>(mass.m.size());
+    return std::abs(mean) > std::log2(usual) ? std::exp2(std::round(mean)) : 1;
+}
+
 }  // namespace
 
 RpEquations::RpEquations(const lie::System& system, const lie::State& start, RpForm form, double alpha)
     : system(system), form(form), alpha(form == RpForm::baumgarte ? alpha : 0), origin(origin_near(start)),
-      bodies(system.bodies()), m(system.rows()), first_lambda(14 * bodies),
-      first_mu(first_lambda + m + bodies), body(bodies), C(system.pattern()), load(bodies),
-      force_lambda(6 * bodies), force_mu(6 * bodies), velocity(6 * bodies), acceleration(6 * bodies), Phi(m),
-      nu(m), gamma(m), H(C), d_nu(C), d_gamma(C), d_load(system.load_pattern())
+      length(typical_length(system.mass())), bodies(system.bodies()), m(system.rows()),
+      mu_of_rotation(1 / (length * length)), first_lambda(14 * bodies), first_mu(first_lambda + m + bodies),
+      body(bodies), C(system.pattern()), load(bodies), force_lambda(6 * bodies), force_mu(6 * bodies),
+      velocity(6 * bodies), acceleration(6 * bodies), Phi(m), nu(m), gamma(m), H(C), d_nu(C), d_gamma(C),
+      d_load(system.load_pattern())
 {
     x = start;
     find_pairs();
@@ -141,6 +154,34 @@ void RpEquations::read(double t, const ConstVectorRef& y, lie::State& to) const
     }
 }
 
+RpEquations::Units RpEquations::units(const lie::State& at) const
+{
+    Units u{Eigen::VectorXd::Ones(size()), Eigen::VectorXd::Ones(size())};
+    const double L = length;
+    for (int b = 0; b < bodies; ++b) {
+        u.unknown.segment<3>(offset(b)).setConstant(L);      // r
+        u.unknown.segment<3>(offset(b) + 7).setConstant(L);  // ṙ
+        u.equation.segment<3>(offset(b)).setConstant(1 / L);
+        u.equation.segment<3>(offset(b) + 7).setConstant(1 / L);
+        u.equation.segment<4>(offset(b) + 10).setConstant(1 / (L * L));
+        u.unknown[first_lambda + m + b] = L * L;
+    }
+    lie::Rows rows(system.pattern());
+    system.variation(at, rows);
+    for (int k = 0; k < m; ++k) {
+        double sum = 0;
+        for (int n = rows.start[k]; n < rows.start[k + 1]; ++n)
+            sum += L * L * rows.entry[n].r.squaredNorm() + rows.entry[n].pi.squaredNorm();
+        const double row = sum > 0 ? std::exp2(std::round(0.5 * std::log2(sum))) : 1;  // unit of Φ
+        for (const int first : {first_lambda, first_mu}) {
+            if (first >= size()) continue;
+            u.unknown[first + k] = L * L / row;
+            u.equation[first + k] = 1 / row;
+        }
+    }
+    return u;
+}
+
 // --- the residual -----------------------------------------------------------------------------------------
 
 /// Quantities that the residual and the Jacobian share
@@ -187,7 +228,7 @@ void RpEquations::residual(double t, const ConstVectorRef& y, const ConstVectorR
         if (form == RpForm::ggl) {
             F.segment<3>(offset(b)) += force_mu.segment<3>(6 * b);
             F.segment<4>(offset(b) + 3) +=
-                q.T.transpose() * force_mu.segment<3>(6 * b + 3) + y[first_mu + m + b] * q.p;
+                mu_of_rotation * q.T.transpose() * force_mu.segment<3>(6 * b + 3) + y[first_mu + m + b] * q.p;
         }
         F.segment<3>(offset(b) + 7) = mass.m[b] * q.rddot + force_lambda.segment<3>(6 * b) - load.F[b];
         const Vec3 R = mass.J_bar[b] * q.w + force_lambda.segment<3>(6 * b + 3) - load.n_bar[b] +
@@ -449,7 +490,7 @@ void RpEquations::add_rows(double c_j)
             add(s.q_p, d_p);
             add(s.qdot_p, (d_omega + c_j * d_w).transpose() * q.T);
             if (!ggl) continue;
-            add(s.mu_torque, Phi_p.transpose());
+            add(s.mu_torque, mu_of_rotation * Phi_p.transpose());
             add(s.p, Phi_p);
         }
     }

@@ -34,7 +34,7 @@ enum class RpForm {
 ///
 /// the equations are
 ///
-///     ṙ - v + Φ_rᵀ μ = 0,   ṗ - u + Φ_pᵀ μ + p μ_P = 0          (v, u for ṙ, ṗ as unknowns; μ only with GGL)
+///     ṙ - v + Φ_rᵀ μ = 0,   ṗ - u + ρ⁻² Φ_pᵀ μ + p μ_P = 0      (v, u for ṙ, ṗ as unknowns; μ only with GGL)
 ///     M v̇ + Φ_rᵀ λ - F = 0,   Tᵀ (J̄ T u̇ + Π̄ᵀ λ - n̄ + ω̄ × J̄ ω̄) + p λ_P = 0
 ///
 /// followed by the constraint equations of RpForm. The rotational equation is that of 2.23, 4 Gᵀ J̄ G p̈ - 8
@@ -63,6 +63,13 @@ public:
     /// Replaces the internal states, which must not change the solutions.
     void set_internal_state(const std::vector<double>& internal_state) { x.internal_state = internal_state; }
 
+    /// Units of the unknowns and factors of the equations with which all numbers are those of a model with a
+    /// length ρ of 1 m: y = unknown ∘ y', F' = equation ∘ F. They are powers of two.
+    struct Units {
+        Eigen::VectorXd unknown, equation;
+    };
+    Units units(const lie::State& x) const;
+
     /// F(t, y, ẏ), size() components
     void residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
     /// ∂F/∂y + c_j ∂F/∂ẏ in compressed columns with a fixed pattern, evaluated with μ = 0. μ is zero up to
@@ -80,6 +87,8 @@ public:
     const RpForm form;
     const double alpha;
     const lie::Vec3 origin;  ///< r_0 [m]
+    /// ρ [m]: 1, or a mean radius of gyration of the bodies if that is beyond 1 cm to 100 m
+    const double length;
 
 private:
     /// Unknowns of a body and quantities derived from them
@@ -131,6 +140,7 @@ private:
     int offset(int b) const { return 14 * b; }
 
     const int bodies, m;
+    const double mu_of_rotation;       ///< 1/ρ² [1/m²]
     const int first_lambda, first_mu;  ///< λ, then λ_P; μ, then μ_P
 
     lie::State x;

@@ -5,6 +5,7 @@
 #include "io/formats/characters.hpp"
 
 #include <cstdarg>
+#include <filesystem>
 #include <new>
 
 namespace hilda::io {
@@ -57,6 +58,10 @@ int report(const std::exception& error)
     if (dynamic_cast<const InvalidInput*>(&error) != nullptr) return say("error", exit_code::invalid_input);
     if (const auto* failure = dynamic_cast<const NumericalFailure*>(&error))
         return say("error[" + failure->status + "]", exit_code::numerical_failure);
+    if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+        message("hilda: error: " + printable(file->path1().string() + ": " + file->code().message()) + '\n');
+        return exit_code::input_output;
+    }
     if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
         message("hilda: internal error: out of memory\n");
         return exit_code::internal_error;

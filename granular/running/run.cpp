@@ -183,7 +183,7 @@ private:
         if (stages_are_over(true)) return false;
         check_overlap_of_resumed();
         c.world->step();
-        after_step([&](const std::string& text) { warn(text); });
+        after_step([&](const std::string& text) { say(text); });
         return true;
     }
     /// A run that ended because of an overlap has saved the state after that step. It ends there again.
@@ -210,7 +210,7 @@ private:
             c.stages->end_run(*c.world,
                               [&](const char* name, const std::string& text) { warn_of_stage(name, text); });
         if (!c.stages->is_last())
-            warn("the run has ended in stage '" + c.stages->what().name + "', before its last stage");
+            say("the run has ended in stage '" + c.stages->what().name + "', before its last stage");
     }
     void failed(const io::NumericalFailure& failure) override
     {
@@ -255,7 +255,13 @@ private:
     void warn_of_stage(const char* name, const std::string& text)
     {
         if (o.strict) throw StrictWarning(name, text + strict_suffix);
+        say(text);
+    }
+    /// A warning that summary.json has as well
+    void say(const std::string& text)
+    {
         warn(text);
+        said.push_back(text);
     }
     /// Passes the state to the sinks that take it. Throws NotFiniteState before it is written.
     void record()
@@ -389,7 +395,8 @@ private:
                                     .resumed_at = resumed_at,
                                     .seconds = wall_seconds,
                                     .particle_steps = particle_steps,
-                                    .files = sinks.files()})
+                                    .files = sinks.files(),
+                                    .warnings = said})
                            .text();
         return summary_text;
     }
@@ -418,6 +425,7 @@ private:
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0, restored_step = -1;
     double particle_steps = 0, wall_seconds = 0;  ///< since then
+    std::vector<std::string> said;                ///< warnings of stages, insertions and the watch
     std::int64_t known_warnings = 0;              ///< of the watch, which were reported
     EarlierRun earlier;
 };

@@ -480,7 +480,7 @@ def write(arguments):
             raise Refused(f"{arguments.folder}: the page would have {len(text_of_page) / 1e6:.0f} MB, at most "
                           f"{MOST_PAGE_BYTES / 1e6:.0f} MB are written; a smaller --frames, or fewer particles or vertices")
         write_whole(arguments.output, text_of_page)
-    print(f"written       {arguments.output}: {text}, {os.path.getsize(arguments.output) / 1e6:.1f} MB")
+    print(f"written       {arguments.output}: {text}, {os.path.getsize(arguments.output) / 1e6:.1f} MB", flush=True)
 
 
 def main():
@@ -501,10 +501,13 @@ def main():
     except (Failed, RuntimeError, TimeoutError) as failed:
         code, text = 5, str(failed).splitlines()[0]
     except OSError as error:
-        code, text = 5, f"{error.filename}: {error.strerror}"
+        code, text = 5, f"{error.filename or 'standard output'}: {error.strerror}"
     except KeyboardInterrupt:
         code, text = 130, "view: interrupted; nothing was written"
-    print(f"hilda: error: {text}", file=sys.stderr)
+    try:
+        print(f"hilda: error: {text}", file=sys.stderr, flush=True)
+    except OSError:  # stderr is closed: the exit code is all that is left
+        os._exit(code)
     sys.exit(code)
 
 

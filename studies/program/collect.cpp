@@ -86,17 +86,12 @@ run::Shard shard_of(const run::JobRecords& records)
 /// shard has none of them, but its folder may have those of an earlier study.
 void copy_other_files(const std::string& from, const std::string& to)
 {
-    try {
-        for (const auto& item : fs::directory_iterator(from)) {
-            const fs::path target = to / item.path().filename();
-            if (item.is_directory())
-                fs::copy(item.path(), target,
-                         fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-            else if (item.path().filename() != "study.shard")
-                fs::copy(item.path(), target, fs::copy_options::skip_existing);
-        }
-    } catch (const fs::filesystem_error& e) {
-        throw io::IoError(std::string("collect: ") + e.what());
+    for (const auto& item : fs::directory_iterator(from)) {
+        const fs::path target = to / item.path().filename();
+        if (item.is_directory())
+            fs::copy(item.path(), target, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+        else if (item.path().filename() != "study.shard")
+            fs::copy(item.path(), target, fs::copy_options::skip_existing);
     }
 }
 

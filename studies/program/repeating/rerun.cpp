@@ -76,8 +76,9 @@ Record read_record(const fs::path& directory)
 {
     if (const std::optional<Record> found = record_in(directory)) return *found;
     std::vector<fs::path> folders;
+    std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory))
-        if (entry.is_directory()) folders.push_back(entry.path());
+        if (entry.is_directory(error)) folders.push_back(entry.path());
     std::sort(folders.begin(), folders.end());
     std::optional<Record> common;
     for (const fs::path& folder : folders) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// CPU time per step of the N-bar pendulum over N (Fang 2022, Figs. 3.14, 3.15).
+/// CPU time per step of the N-bar pendulum over N (Fang 2022, Fig. 3.15).
 ///
 /// N bars are connected by spherical joints. The gravity vector is inclined, and each bar initially spins
 /// about its longitudinal axis at a random rate (--seed); the bars have no other velocity. For each N and
@@ -153,7 +153,7 @@ void scaling(StudyContext& s)
 
 const bool registered_scaling = io::Registry<Study>::add(
     {.name = "scaling",
-     .answers = "CPU time per step of the N-bar pendulum over N (Figs. 3.14, 3.15)",
+     .answers = "CPU time per step of the N-bar pendulum over N (Fig. 3.15)",
      .options = options_of_integrators({"--repeats", "--bars", "--check", "--seed", "--strict"}),
      .keys = {"exponent", "largest_exponent", "ratio_to_full"},
      .files = {"scaling.png"},

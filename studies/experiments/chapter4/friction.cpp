@@ -193,8 +193,8 @@ void friction_experiments(StudyContext& s)
 const bool registered_friction = io::Registry<Study>::add(
     {.name = "friction",
      .answers =
-         "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6-4.12, "
-         "4.14-4.18, Table 4.7)",
+         "sliding, rolling and spinning friction: experiments and acceptance criteria (Figs. 4.6, 4.7, "
+         "4.9-4.12, 4.14-4.18, Table 4.7)",
      .options = {"--problem", "--against", "--check", "--vtk", "--shard"},
      .keys = {"difference"},
      .files = {"EXPERIMENT.csv", "EXPERIMENT-poses.csv", "EXPERIMENT-contacts.csv", "EXPERIMENT-shapes.json",

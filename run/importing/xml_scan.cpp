@@ -41,7 +41,7 @@ public:
             else if (rest.starts_with("<?") || rest.starts_with("<!"))
                 skip_to(">");
             else if (rest.starts_with("</"))
-                --depth, skip_to(">");
+                depth = std::max(depth - 1, 0), skip_to(">");
             else
                 ++at, element();
         }

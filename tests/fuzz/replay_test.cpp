@@ -28,6 +28,10 @@ constexpr Target targets[] = {{"expression", fuzz::expression},
                               {"granular_checkpoint", fuzz::granular_checkpoint},
                               {"particles", fuzz::particles},
                               {"mesh", fuzz::mesh},
+                              {"table", fuzz::table},
+                              {"samples", fuzz::samples},
+                              {"words", fuzz::words},
+                              {"xml", fuzz::xml},
                               {"arguments", fuzz::arguments},
                               {"granular_arguments", fuzz::granular_arguments}};
 

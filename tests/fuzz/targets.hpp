@@ -20,8 +20,12 @@ void checkpoint(
 void granular_checkpoint(std::string_view input);  ///< the same of hilda-granular
 void particles(std::string_view input);            ///< a table of particles (CSV)
 void mesh(std::string_view input);                 ///< an OBJ text, and an STL file
-void arguments(std::string_view input);            ///< a command line of hilda, one argument on each line
-void granular_arguments(std::string_view input);   ///< a command line of hilda-granular
+void table(std::string_view input);                ///< a CSV table
+void samples(std::string_view input);              ///< numbers t, f of a sampled motion
+void words(std::string_view input);      ///< the command line in the record of a result, for hilda rerun
+void xml(std::string_view input);        ///< a robot file, for the checks before a library reads it
+void arguments(std::string_view input);  ///< a command line of hilda, one argument on each line
+void granular_arguments(std::string_view input);  ///< a command line of hilda-granular
 
 /// A checkpoint with this content: header and checksum are those of `valid`, a checkpoint of the program
 std::string sealed(std::string_view content, const std::string& valid);

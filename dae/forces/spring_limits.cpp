@@ -44,7 +44,7 @@ void set_spring_limits(const Model& model, lie::Saddle& K, const State& x)
             };
             set(i, row.r_i, row.pi_i);
             set(j, row.r_j, row.pi_j);
-            K.solve(b);
+            K.solve_in_step(b);
             const auto along = [&](int body, const Vec3& r, const Vec3& pi) {
                 return body == ground ? 0
                                       : r.dot(b.segment<3>(6 * body)) + pi.dot(b.segment<3>(6 * body + 3));

@@ -37,9 +37,10 @@ public:
     /// Makes the lists of operations, before the first factorisation. `pattern` is that of the constructor.
     void prepare(const Rows& pattern);
 
-    /// Factors S of these rows. Returns false if the smallest pivot is below 1e-8 of its diagonal entry, or
-    /// not finite: the rows are nearly dependent or not finite. If `shift` = ε is positive, factors S + ε D,
-    /// with D = 1 for rows that are zero. Returns false then only if a number is not finite or too large.
+    /// Factors S of these rows. Returns false if the smallest pivot is below 1e-12 of its diagonal entry
+    /// (1e-8 with regularised rows), or not finite: the rows are nearly dependent or not finite. If `shift` =
+    /// ε is positive, factors S + ε D, with D = 1 for rows that are zero. Returns false then only if a number
+    /// is not finite or too large.
     bool factor(const Rows& C, double shift = 0);
 
     /// Solves in place: (f, g) on entry, (x, λ) on return.

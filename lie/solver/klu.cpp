@@ -5,6 +5,7 @@
 
 #include <klu.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hilda::lie {
@@ -17,25 +18,35 @@ namespace {
 constexpr double singular_when_scaled = 1e-14;
 // New pivots are chosen if the reciprocal condition is below this fraction of its value at the last choice.
 constexpr double pivot_loss_limit = 1e-3;
+// Up to this number of unknowns the factors of both orderings are compared.
+constexpr int most_compared = 2000;
+
+constexpr int amd = 0, colamd = 1;
 
 }  // namespace
 
+/// AMD orders the symmetric pattern, as if the pivots were on the diagonal. The multipliers of constraints
+/// have zeros there: a chain of hinges then has factors that grow with the power 2.4 of its length. COLAMD
+/// bounds the fill-in for any pivots. Its factors of such a chain grow linearly, and those of most other
+/// mechanisms are larger than with AMD.
 struct Klu::Library {
     klu_common common{};
-    klu_symbolic* symbolic = nullptr;
+    klu_symbolic* orderings[2] = {};   ///< AMD, COLAMD
+    klu_symbolic* symbolic = nullptr;  ///< that of `numeric`
     klu_numeric* numeric = nullptr;
 
     explicit Library(Scaling scaling)
     {
         klu_defaults(&common);
-        common.ordering = 0;  // AMD, for a symmetric pattern
-        common.btf = 0;       // no block triangular form
+        common.btf = 0;  // no block triangular form
         common.scale = scaling == Scaling::none ? -1 : 2;
     }
-    ~Library()
+    ~Library() { clear(); }
+    void clear()
     {
         klu_free_numeric(&numeric, &common);
-        klu_free_symbolic(&symbolic, &common);
+        for (klu_symbolic*& ordering : orderings) klu_free_symbolic(&ordering, &common);
+        symbolic = nullptr;
     }
     Library(const Library&) = delete;
     Library& operator=(const Library&) = delete;
@@ -49,22 +60,28 @@ void Klu::analyse(std::vector<int> columns, std::vector<int> rows)
     column_start = std::move(columns);
     row_index = std::move(rows);
     value.assign(row_index.size(), 0);
-    klu_free_numeric(&klu->numeric, &klu->common);
+    klu->clear();
     have_pivots = false;
-    klu_free_symbolic(&klu->symbolic, &klu->common);
-    klu->symbolic = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
-    if (klu->symbolic == nullptr)
-        throw SingularMatrix(
-            "the matrix is singular for all values: there are more constraint rows than degrees of freedom, "
-            "or a "
-            "row has no body",
-            0);
+    for (const int ordering : {amd, colamd}) {
+        klu->common.ordering = ordering;
+        klu->orderings[ordering] = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
+        if (klu->orderings[ordering] == nullptr)
+            throw SingularMatrix(
+                "the matrix is singular for all values: there are more constraint rows than degrees of "
+                "freedom, or a row has no body",
+                0);
+    }
 }
 
 double Klu::operations() const
 {
     // the estimate of AMD; -1 if there is none
-    return klu->symbolic->est_flops >= 0 ? klu->symbolic->est_flops : 0;
+    return std::max(klu->orderings[amd]->est_flops, 0.);
+}
+
+long Klu::entries_of_factors() const
+{
+    return klu->numeric == nullptr ? 0 : static_cast<long>(klu->numeric->lnz) + klu->numeric->unz;
 }
 
 bool Klu::refactor()
@@ -83,14 +100,35 @@ void Klu::factor(const char* what)
     for (const double v : value)
         if (!std::isfinite(v)) throw NonFinite(std::string("an entry of ") + what + " is not finite");
     klu_free_numeric(&klu->numeric, &klu->common);
-    klu->numeric =
-        klu_factor(column_start.data(), row_index.data(), value.data(), klu->symbolic, &klu->common);
-    ++full_count;
     rcond = 0;
-    if (klu->numeric != nullptr && klu->common.status == KLU_OK) {
-        klu_rcond(klu->symbolic, klu->numeric, &klu->common);
-        rcond = klu->common.rcond;
-    }
+    double operations = 0;
+    const auto factor_with = [&](int ordering) {
+        klu_symbolic* const symbolic = klu->orderings[ordering];
+        klu_numeric* numeric =
+            klu_factor(column_start.data(), row_index.data(), value.data(), symbolic, &klu->common);
+        if (numeric == nullptr || klu->common.status != KLU_OK) {
+            if (klu->numeric == nullptr)
+                klu->numeric = numeric, klu->symbolic = symbolic;
+            else
+                klu_free_numeric(&numeric, &klu->common);
+            return;
+        }
+        klu_flops(symbolic, numeric, &klu->common);
+        const double of_this = klu->common.flops;
+        klu_rcond(symbolic, numeric, &klu->common);
+        if (rcond > 0 && of_this >= operations) {
+            klu_free_numeric(&numeric, &klu->common);
+            return;
+        }
+        klu_free_numeric(&klu->numeric, &klu->common);
+        klu->numeric = numeric, klu->symbolic = symbolic;
+        rcond = klu->common.rcond, operations = of_this;
+    };
+    const bool compared = size() <= most_compared;
+    if (compared) factor_with(amd);
+    // The estimate of AMD is a lower bound of its operations.
+    if (!compared || rcond == 0 || operations > 2 * this->operations()) factor_with(colamd);
+    ++full_count;
     have_pivots = rcond > (klu->common.scale < 0 ? singular_when_scaled : 0);
     if (!have_pivots)
         throw SingularMatrix(std::string(what) + " is singular: redundant or singular constraints?", rcond);

@@ -46,6 +46,8 @@ public:
     long refactorizations() const { return refactor_count; }
     /// Estimated number of multiplications of one factorisation
     double operations() const;
+    /// Number of entries of the present factors; 0 without factors
+    long entries_of_factors() const;
 
 private:
     struct Library;

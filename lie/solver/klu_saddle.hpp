@@ -46,6 +46,7 @@ public:
     long refactorizations() const { return klu.refactorizations(); }
     /// Estimated number of multiplications of one factorisation
     double operations() const { return klu.operations(); }
+    long entries_of_factors() const { return klu.entries_of_factors(); }
 
 private:
     void set_scales(const Rows& rows);

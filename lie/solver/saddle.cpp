@@ -14,6 +14,11 @@ namespace hilda::lie {
 
 namespace {
 
+// Solutions of the condensed system are refined if a pivot is below this part of its diagonal entry. The
+// motion then loses half of the digits of the multipliers.
+constexpr double accurate_pivot = 1e-8;
+constexpr int most_of_lost = 4;  // refinements
+
 Mass unit_mass(int bodies)
 {
     return {std::vector<double>(bodies, 1), std::vector<Mat3>(bodies, Mat3::Identity())};
@@ -40,6 +45,7 @@ const Rows& Saddle::solved() const { return elimination ? elimination->reduced()
 
 double Saddle::reciprocal_condition() const { return factors->reciprocal_condition(); }
 long Saddle::factorizations() const { return klu->factorizations(); }
+long Saddle::entries_of_factors() const { return klu->entries_of_factors(); }
 long Saddle::refactorizations() const { return klu->refactorizations() + condensed_factorizations; }
 
 void Saddle::choose_solver()
@@ -100,8 +106,10 @@ void Saddle::set_rows(const State& x, std::span<const double> compliance)
 
 void Saddle::factor_rows(const State& x)
 {
+    lost_digits = false;
     if (condensed && condensed->factor(solved(), used_shift())) {
         factors = condensed.get();
+        lost_digits = !keeps && condensed->reciprocal_condition() < accurate_pivot;
         ++condensed_factorizations;
         return;
     }
@@ -122,6 +130,7 @@ void Saddle::choose_pivots(const State& x, std::span<const double> compliance)
 
 void Saddle::factor_with_new_pivots(const State& x)
 {
+    lost_digits = false;
     factors = klu.get();
     klu->factor(solved());
     pivot_state = x;
@@ -156,11 +165,17 @@ void Saddle::solve_constraints(Eigen::VectorXd& b)
 
 void Saddle::solve_refined(Eigen::VectorXd& b)
 {
-    refine(b, keeps ? most_refinements : 1);
+    refine(b, keeps ? most_refinements : lost_digits ? most_of_lost : 1);
     minimise_multipliers(b);
 }
 
-void Saddle::solve_in_step(Eigen::VectorXd& b) { keeps ? refine(b, refinements) : solve(b); }
+void Saddle::solve_in_step(Eigen::VectorXd& b)
+{
+    if (keeps || lost_digits)
+        refine(b, keeps ? refinements : most_of_lost);
+    else
+        solve(b);
+}
 
 void Saddle::refine(Eigen::VectorXd& b, int most)
 {
@@ -171,7 +186,7 @@ void Saddle::refine(Eigen::VectorXd& b, int most)
         work = right_side - residual;
         solve(work);
         b += work;
-        if (keeps && is_rounding(work, b)) return;
+        if ((keeps || lost_digits) && is_rounding(work, b)) return;
     }
 }
 

@@ -94,7 +94,8 @@ public:
     /// friction rows replace `compliance`.
     void choose_pivots(const State& x, std::span<const double> compliance = {});
 
-    /// Solves K z = b in place. b has size() components.
+    /// Solves K z = b in place. b has size() components. For corrections of an iteration whose residuals are
+    /// exact: the condensed solver may lose up to six digits of the motion.
     void solve(Eigen::VectorXd& b);
     /// Solves K z = (0, g) in place. Only the constraint part g of b is read.
     void solve_constraints(Eigen::VectorXd& b);
@@ -102,8 +103,8 @@ public:
     /// there are up to ten steps, until the motion no longer changes, and the multipliers are those of
     /// minimise_multipliers().
     void solve_refined(Eigen::VectorXd& b);
-    /// The solution in a step: with redundant rows solve_refined() without minimise_multipliers(), otherwise
-    /// solve()
+    /// The solution in a step: solve() with refinement, if there are redundant rows or the condensed solver
+    /// has lost digits; without minimise_multipliers()
     void solve_in_step(Eigen::VectorXd& b);
     /// Replaces the multipliers in z by those of minimum norm that exert the same forces Cᵀ λ. The norm is
     /// √(λᵀ D λ), that of the multipliers of rows of length one in the metric of the mass. Does nothing if
@@ -131,6 +132,7 @@ public:
     /// Number of factorisations in a fixed order: KLU with the pivots of an earlier one, or condensed
     long refactorizations() const;
     bool is_condensed() const { return condensed != nullptr; }
+    long entries_of_factors() const;  ///< of those of KLU
 
 private:
     void choose_solver();
@@ -165,6 +167,7 @@ private:
     std::unique_ptr<KluSaddle> klu;
     std::unique_ptr<Condensed> condensed;  ///< null if KLU factors all matrices
     SaddleFactors* factors;                ///< the present ones: `klu` or `condensed`
+    bool lost_digits = false;              ///< whether the solutions of `condensed` must be refined
     long condensed_factorizations = 0;
 
     Eigen::VectorXd work, residual, right_side;

@@ -17,7 +17,7 @@ double EffectiveMass::operator()(const lie::State& x, int body)
     lie::Mat3 Y;
     for (int axis = 0; axis < 3; ++axis) {
         z = Eigen::VectorXd::Unit(K.size(), 6 * body + axis);
-        K.solve(z);
+        K.solve_in_step(z);
         Y.col(axis) = z.segment<3>(6 * body);
     }
     const lie::Mat3 symmetric = 0.5 * (Y + Y.transpose());

@@ -178,13 +178,27 @@ TEST_CASE("KLU replaces the condensed system while rows are nearly dependent", "
     CHECK(K.factorizations() == 0);
     const lie::Rows healthy = graph.rows_pattern;
 
-    // Row 1 equals row 0 up to 1e-6. S contains the square of the difference; the pivot loses twelve digits.
-    entry[1].r = entry[0].r + 1e-6 * entry[1].r;
-    entry[1].pi = entry[0].pi;
-    K.assemble({});
-    CHECK(K.factorizations() == 1);
     const Eigen::VectorXd z = Eigen::VectorXd::Random(K.size());
     Eigen::VectorXd b(K.size()), c;
+    const Vec3 difference = entry[1].r;
+    entry[1].pi = entry[0].pi;
+    // Row 1 equals row 0 up to 1e-5. S contains the square of the difference: the multipliers lose ten
+    // digits, and the motion five, which are refined in a step.
+    entry[1].r = entry[0].r + 1e-5 * difference;
+    K.assemble({});
+    CHECK(K.factorizations() == 0);
+    K.multiply(z, b);
+    c = b;
+    K.solve(b);
+    K.solve_in_step(c);
+    const auto error_of_motion = [&](const Eigen::VectorXd& of) { return (of - z).head(12).norm(); };
+    CHECK((b - z).norm() < 1e-3 * z.norm());
+    CHECK(error_of_motion(b) < 1e-7 * z.norm());
+    CHECK(error_of_motion(c) < 1e-10 * z.norm());
+
+    entry[1].r = entry[0].r + 1e-7 * difference;
+    K.assemble({});
+    CHECK(K.factorizations() == 1);
     K.multiply(z, b);
     c = b;
     K.solve(b);

@@ -121,16 +121,30 @@ void read_options(ObjectReader& o, Case& out, WorldOptions& world)
     if (!(world.skin > 0 && world.skin <= 1))
         o.fail("skin", "skin must be positive and at most 1 diameter, got " + io::shortest(world.skin));
     o.positive("skin", {}, world.skin);  // in single precision
+    world.largest_overlap = o.number(
+        "largest_overlap",
+        {"Largest overlap of two bodies, over the smaller radius [-]. The run ends above it. With more than "
+         "0.5, for very soft particles, it begins with a notice.",
+         "0.8", R"("exclusiveMinimum": 0, "maximum": 1)"},
+        world.largest_overlap);
+    if (!(world.largest_overlap > 0 && world.largest_overlap <= 1))
+        o.fail("largest_overlap",
+               "largest_overlap must be positive and at most 1, got " + io::shortest(world.largest_overlap));
+    if (world.largest_overlap > 0.5)
+        out.notices.push_back(o.place("largest_overlap") + ": overlaps of up to " +
+                              io::shortest(world.largest_overlap) +
+                              " of a radius are accepted; the contact laws hold for small overlaps");
     world.start_overlap = o.number(
         "start_overlap",
-        {"Largest overlap of particles at the start and of inserted ones, over the smaller radius [-]. "
-         "With more than 0.05, for example to continue from the table of a bed of soft particles, the "
-         "run begins with a notice. A run ends when an overlap exceeds 0.5.",
-         "0.4", R"("exclusiveMinimum": 0, "maximum": 0.5)"},
-        world.start_overlap);
-    if (!(world.start_overlap > 0 && world.start_overlap <= 0.5))
-        o.fail("start_overlap",
-               "start_overlap must be positive and at most 0.5, got " + io::shortest(world.start_overlap));
+        {"Largest overlap of particles at the start and of inserted ones, over the smaller radius [-], at "
+         "most largest_overlap. With more than 0.05, for example to continue from the table of a bed of soft "
+         "particles, the run begins with a notice.",
+         "0.4", R"("exclusiveMinimum": 0, "maximum": 1)"},
+        std::min(world.start_overlap, world.largest_overlap));
+    if (!(world.start_overlap > 0 && world.start_overlap <= world.largest_overlap))
+        o.fail("start_overlap", "start_overlap must be positive and at most largest_overlap = " +
+                                    io::shortest(world.largest_overlap) + ", got " +
+                                    io::shortest(world.start_overlap));
     if (world.start_overlap > 0.05)
         out.notices.push_back(
             o.place("start_overlap") + ": overlaps of up to " + io::shortest(world.start_overlap) +

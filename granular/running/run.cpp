@@ -183,7 +183,7 @@ private:
         if (stages_are_over(true)) return false;
         check_overlap_of_resumed();
         c.world->step();
-        after_step([&](const std::string& text) { say(text); });
+        after_step([&](const std::string& text) { warn(text); });
         return true;
     }
     /// A run that ended because of an overlap has saved the state after that step. It ends there again.
@@ -191,12 +191,12 @@ private:
     {
         const World& w = *c.world;
         if (!resumed || w.steps() != resumed_at) return;
-        if (const double largest = w.watch().largest_overlap; largest > watch_limit::largest_overlap)
+        if (const double largest = w.watch().largest_overlap; largest > w.largest_overlap())
             throw OverlapTooLarge(
                 io::formatted("the largest overlap of two bodies is %.3g of the smaller radius, more than "
                               "%g, at t = %.9g s, "
                               "where the run has ended before",
-                              largest, watch_limit::largest_overlap, w.t()));
+                              largest, w.largest_overlap(), w.t()));
     }
     void end() override
     {
@@ -210,7 +210,7 @@ private:
             c.stages->end_run(*c.world,
                               [&](const char* name, const std::string& text) { warn_of_stage(name, text); });
         if (!c.stages->is_last())
-            say("the run has ended in stage '" + c.stages->what().name + "', before its last stage");
+            warn("the run has ended in stage '" + c.stages->what().name + "', before its last stage");
     }
     void failed(const io::NumericalFailure& failure) override
     {
@@ -255,13 +255,7 @@ private:
     void warn_of_stage(const char* name, const std::string& text)
     {
         if (o.strict) throw StrictWarning(name, text + strict_suffix);
-        say(text);
-    }
-    /// A warning that summary.json has as well
-    void say(const std::string& text)
-    {
         warn(text);
-        said.push_back(text);
     }
     /// Passes the state to the sinks that take it. Throws NotFiniteState before it is written.
     void record()
@@ -395,8 +389,7 @@ private:
                                     .resumed_at = resumed_at,
                                     .seconds = wall_seconds,
                                     .particle_steps = particle_steps,
-                                    .files = sinks.files(),
-                                    .warnings = said})
+                                    .files = sinks.files()})
                            .text();
         return summary_text;
     }
@@ -425,7 +418,6 @@ private:
     long recorded = -1, written = 0;  ///< last steps that were passed to record() and to a sink
     long resumed_at = 0, restored_step = -1;
     double particle_steps = 0, wall_seconds = 0;  ///< since then
-    std::vector<std::string> said;                ///< warnings of stages, insertions and the watch
     std::int64_t known_warnings = 0;              ///< of the watch, which were reported
     EarlierRun earlier;
 };

@@ -9,14 +9,17 @@ namespace hilda::granular {
 
 namespace {
 
-io::Json insertions(const Insertions& of, double t)
+io::Json insertions(const Insertions& of, double t, double h)
 {
     io::Json all = io::Json::array();
-    for (const Insertion& i : of.all)
-        all.push_back({{"name", i.what().name},
-                       {"particles", static_cast<long>(i.count())},
-                       {"mass", i.mass()},
-                       {"due_mass", i.due_mass(t)}});
+    for (const Insertion& i : of.all) {
+        io::Json one = {{"name", i.what().name},
+                        {"particles", static_cast<long>(i.count())},
+                        {"mass", i.mass()},
+                        {"due_mass", i.due_mass(t)}};
+        if (const std::string text = i.shortfall(t, h); !text.empty()) one["warning"] = text;
+        all.push_back(std::move(one));
+    }
     return all;
 }
 
@@ -40,13 +43,12 @@ io::Json run_summary(const RunOptions& options, const Case& c, const ChangeHisto
     s["counters"] = {{"steps", w.steps()}, {"rebuilds", w.rebuilds()}, {"rows", end.rows}, {"t", w.t()}};
     if (w.removes())
         s["outflow"] = {{"particles", static_cast<long>(w.outflow().count)}, {"mass", w.outflow().mass}};
-    if (c.insertions != nullptr) s["insertions"] = insertions(*c.insertions, w.t());
+    if (c.insertions != nullptr) s["insertions"] = insertions(*c.insertions, w.t(), c.h);
     if (!history.all.empty()) s["changes"] = history.summary();
     if (c.stages != nullptr) s["stages"] = c.stages->summary(w.t());
     if (c.groups != nullptr) s["groups"] = c.groups->names;
     s["kinetic_energy"] = w.kinetic_energy();
     s["watch"] = watch_summary(w.watch());
-    s["warnings"] = end.warnings;
     s["files"] = end.files;
     s["timing"] = {{"wall_seconds", end.seconds},
                    {"steps_per_second", static_cast<double>(w.steps() - end.resumed_at) / end.seconds},

@@ -21,7 +21,6 @@ struct RunEnd {
     long resumed_at;                      ///< number of the step; 0: not resumed
     double seconds, particle_steps;       ///< wall time of the steps [s]; sum of their numbers of particles
     std::vector<std::string> files;       ///< written into the directory
-    std::vector<std::string> warnings;    ///< texts of the warnings since the last start
 };
 
 io::Json run_summary(const RunOptions& options, const Case& c, const ChangeHistory& history,

@@ -34,11 +34,10 @@ public:
 
 /// Limits of the watch
 namespace watch_limit {
-constexpr double overlap = 0.05;         ///< over the smaller radius; a warning above it
-constexpr double largest_overlap = 0.5;  ///< over the smaller radius; the run ends above it
-constexpr double displacement = 0.1;     ///< of a particle in a step, over its radius; a warning above it
-constexpr double energy = 0.01;          ///< allowed gain, over the largest kinetic energy
-constexpr long interval = 128;           ///< steps between two samples
+constexpr double overlap = 0.05;      ///< over the smaller radius; a warning above it
+constexpr double displacement = 0.1;  ///< of a particle in a step, over its radius; a warning above it
+constexpr double energy = 0.01;       ///< allowed gain, over the largest kinetic energy
+constexpr long interval = 128;        ///< steps between two samples
 }  // namespace watch_limit
 
 /// Record of the watch. Energies, momenta and fractions are those of the last sample, `largest` ones those of

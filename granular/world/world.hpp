@@ -147,8 +147,9 @@ struct WorldOptions {
     Vec3 gravity = {0, 0, -9.81};  ///< [m/s²]
     double h = 0;                  ///< step [s]
     double skin = 0.1;  ///< skin of the neighbour list, in median diameters of the particles, in (0, 1]
-    /// Largest overlap of particles that are added, over the smaller radius, below 0.5
+    /// Largest overlap of particles that are added, over the smaller radius, at most largest_overlap
     double start_overlap = 0.05;
+    double largest_overlap = 0.5;  ///< over the smaller radius; the run ends above it
     Scheme scheme = Scheme::symplectic_euler;
     bool orientation = false;  ///< integrate the orientations of the particles, at 32 bytes per particle
     Device device = {};
@@ -282,6 +283,7 @@ public:
     /// are called in the order of registration. They are not part of a checkpoint.
     void before_each_step(std::function<void(World&)> f);
     Scheme scheme() const { return options.scheme; }
+    double largest_overlap() const { return options.largest_overlap; }
     /// Access to a boundary, to prescribe v, omega, F and T. A boundary with a mass is accelerated by the
     /// contact loads along its free axes. The number is not checked.
     Boundary& boundary(int number) { return boundaries[number]; }

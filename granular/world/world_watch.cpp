@@ -204,7 +204,7 @@ void World::throw_overlap() const
     }
     std::string what =
         io::formatted("the largest overlap of two bodies is %.3g of the smaller radius, more than %g",
-                      record.largest_overlap, watch_limit::largest_overlap);
+                      record.largest_overlap, options.largest_overlap);
     if (largest > 0)
         what += io::formatted(
             ": %s and %s overlap by %.3g at t = %.9g s", name_of(deepest.i).c_str(),
@@ -261,7 +261,7 @@ void World::check_watch()
     if (!tool_loads.empty()) check_tools();
     if (w.largest_overlap > watch_limit::overlap) w.warnings |= WatchRecord::deep;
     if (w.largest_displacement > watch_limit::displacement) w.warnings |= WatchRecord::fast;
-    if (!(w.largest_overlap <= watch_limit::largest_overlap)) throw_overlap();
+    if (!(w.largest_overlap <= options.largest_overlap)) throw_overlap();
     // The two schemes gain energy in every collision.
     const bool gains = options.scheme == Scheme::forward_euler || options.scheme == Scheme::extended_taylor;
     const double gain = w.most_dissipated - w.dissipated;

@@ -160,11 +160,11 @@ class Door:
         late = due - inserted > max(0.1 * due, 10 * 2500 * 4 / 3 * math.pi * 1e-9)
         unclear = abs(due - inserted - 0.1 * due) < 0.1 * due  # those of the last interval wait for the next one
         summary = json.loads((self.folder / "out/summary.json").read_text())
-        said = any("cannot keep up" in text for text in summary["warnings"])
+        said = "cannot keep up" in summary["insertions"][0].get("warning", "")
         strict = self.granular("--strict")
         late = said if unclear else late
         return f"behind {rate:.2g} kg/s", ended.code == 0 and said == late and (strict.code == 4) == late, (
-            f"exit {ended.code}, {strict.code}, inserted {inserted:.3g} of {due:.3g} kg, {summary['warnings']}")
+            f"exit {ended.code}, {strict.code}, inserted {inserted:.3g} of {due:.3g} kg, {summary['insertions']}")
 
     def columns(self, rng):
         names = ["id", "material", "radius", "x", "y", "z", "vx", "vy", "vz", "omega_x", "omega_y", "omega_z"]

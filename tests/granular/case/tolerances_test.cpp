@@ -3,12 +3,15 @@
 // forces.
 #include "granular/case/case_file.hpp"
 #include "granular/case/particles/fill.hpp"
+#include "granular/world/watch.hpp"
+#include "granular/world/world.hpp"
 #include "io/error.hpp"
 #include "io/json.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 
 using namespace hilda;
 using hilda::granular::read_case;
@@ -72,6 +75,33 @@ TEST_CASE("start_overlap is the largest overlap at the start", "[granular][case]
     else
         CHECK_THROWS_AS(insert_particles(c), io::InvalidInput);
     CHECK_THROWS_AS(read_case(case_of("\"start_overlap\": 0.6"), "case"), io::InvalidInput);
+}
+
+TEST_CASE("a run ends above largest_overlap", "[granular][case]")
+{
+    // Two particles approach with a spring that stops them at an overlap of 0.7 of their radius.
+    const auto run = [](const std::string& key) {
+        constexpr double R = 0.01, v = 1;
+        const double m = 2500 * 4. / 3 * std::numbers::pi * R * R * R,
+                     k = m / 2 * std::pow(2 * v / (0.7 * R), 2);
+        std::string text =
+            case_of(key + R"("particles": [{"r": [-0.0101, 0, 0], "radius": 0.01, "v": [1, 0, 0]}, )"
+                          R"({"r": [0.0101, 0, 0], "radius": 0.01, "v": [-1, 0, 0]}])");
+        const std::string law = R"("restitution": 0.5, "mu": 0.4, "tangential": {"law": "mindlin"})";
+        text.replace(text.find(law), law.size(),
+                     R"("normal": {"law": "hooke", "k_n": )" + io::shortest(k) + '}');
+        granular::Case c = read_case(text, "case");
+        insert_particles(c);
+        c.world->step(2000);
+        return c.world->watch().largest_overlap;
+    };
+    CHECK_THROWS_AS(run(""), granular::OverlapTooLarge);
+    CHECK_THROWS_AS(run("\"largest_overlap\": 0.65, "), granular::OverlapTooLarge);
+    CHECK(run("\"largest_overlap\": 0.75, ") == Approx(0.7).epsilon(0.02));
+    CHECK_THROWS_AS(read_case(case_of("\"largest_overlap\": 1.1"), "case"), io::InvalidInput);
+    CHECK_THROWS_AS(read_case(case_of("\"largest_overlap\": 0.3, \"start_overlap\": 0.4"), "case"),
+                    io::InvalidInput);
+    CHECK(read_case(case_of("\"largest_overlap\": 0.6"), "case").notices.size() == 1);
 }
 
 TEST_CASE("an inertia may have rounding errors", "[granular][case]")

@@ -108,12 +108,12 @@ const Case rolling[] = {{R"({"eta_r": 0.2, "eta_psi": 0.1, )" + slide + "}", "ho
 
 }  // namespace
 
-TEST_CASE("a body below the limit of friction does not move", "[contact][friction]")
+TEST_CASE("a body below the limit of friction does not move (long)", "[contact][friction]")
 {
     for (const Case& of : sliding) check_held(of, true, 0.2);
 }
 
-TEST_CASE("a ball below the limit of rolling resistance does not roll", "[contact][friction]")
+TEST_CASE("a ball below the limit of rolling resistance does not roll (long)", "[contact][friction]")
 {
     for (const Case& of : rolling) check_held(of, false, 0.2);
 }

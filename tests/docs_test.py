@@ -15,7 +15,7 @@ Checked are README.md, CONTRIBUTING.md, CHANGELOG.md, studies/README.md and all 
 - JSON blocks and example files with the key hilda_model or hilda_case are valid against their schema. The program
   accepts the models among them.
 - Every page begins with a title, no line contains a tab, and every code block is closed.
-- Every page of results ends with the commit and the date of its numbers.
+- Every page of results ends with the commit and the date of the last measurement of its numbers.
 """
 import json
 import pathlib
@@ -163,8 +163,8 @@ def main():
         if not closed:
             faults.append(f"{name}: a code block is not closed")
         is_result = name.startswith("docs/results/") and path.name not in ("README.md", "dissertation-figures.md")
-        if is_result and not re.search(r"\nNumbers of commit `[0-9a-f]{8}` \(\d{4}-\d\d-\d\d\)\.\n$", text):
-            faults.append(f"{name}: does not end with the line 'Numbers of commit `12345678` (2026-01-31).'")
+        if is_result and not re.search(r"\nNumbers as of commit `[0-9a-f]{8}` \(\d{4}-\d\d-\d\d\)\.\n$", text):
+            faults.append(f"{name}: does not end with the line 'Numbers as of commit `12345678` (2026-01-31).'")
         for number, line in enumerate(text.splitlines(), 1):
             if "\t" in line:
                 faults.append(f"{name}:{number}: contains a tab; use spaces")

@@ -34,6 +34,13 @@ public:
         entries.add(handle, block, klu.value.data());
     }
     void add(int handle, double entry) { klu.value[entries.at(handle)] += entry; }
+    /// Multiplies rows and columns by these factors, after all values have been added.
+    void scale(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns)
+    {
+        for (int column = 0; column < klu.size(); ++column)
+            for (int k = klu.columns()[column]; k < klu.columns()[column + 1]; ++k)
+                klu.value[k] *= rows[klu.rows()[k]] * columns[column];
+    }
 
     /// Reuses pivots as long as they are accurate (Klu::refactor). Throws SingularMatrix, NonFinite.
     void factor();

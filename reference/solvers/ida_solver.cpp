@@ -140,10 +140,10 @@ public:
 
         last = x;
         if (t == t_end || !has_stepped) {  // without a step, t is just behind a break point at t_end
-            read(t_end, y.get(), last);
+            equations.read(t_end, map(y.get()), last);
         } else {
             check(IDAGetDky(ida_memory.get(), t_end, 0, at_node.get()), "IDAGetDky");
-            read(t_end, at_node.get(), last);
+            equations.read(t_end, map(at_node.get()), last);
         }
         last.discrete_state = internal.discrete_state, last.internal_state = internal.internal_state;
         const lie::State& now = updated_internal_state(last);
@@ -177,26 +177,6 @@ private:
 
     Vector new_vector() const { return Vector(allocated(N_VNew_Serial(equations.size(), context.get()))); }
     sunindextype entries() const { return static_cast<sunindextype>(equations.pattern().value.size()); }
-
-    /// The unknowns of IDA in SI units; `work` keeps them
-    Eigen::Map<const Eigen::VectorXd> in_SI(N_Vector v, Eigen::VectorXd& work) const
-    {
-        if (!has_units) return {N_VGetArrayPointer(v), N_VGetLength(v)};
-        work = units.unknown.cwiseProduct(map(v));
-        return {work.data(), work.size()};
-    }
-    void read(double time, N_Vector v, lie::State& x) { equations.read(time, in_SI(v, read_SI), x); }
-    /// Sets y and ẏ to a state.
-    void write(const lie::State& x)
-    {
-        auto values = map(y.get()), rates = map(ydot.get());
-        equations.write(x, values, rates);
-        has_units = equations.length != 1;
-        if (!has_units) return;
-        units = equations.units(x);
-        values.array() /= units.unknown.array();
-        rates.array() /= units.unknown.array();
-    }
 
     /// Whether x is the state that the last call returned. The multipliers may differ, because a change of
     /// the branch of a driver changes them. The time may differ by rounding.
@@ -232,7 +212,7 @@ private:
         lie::project_velocities(system, K, consistent);
         refuse_infinite_load(consistent);
         lie::solve_accelerations(system, K, consistent);
-        write(consistent);
+        equations.write(consistent, map(y.get()), map(ydot.get()));
         internal = consistent;
         t = consistent.t;
         to_restart = false;
@@ -317,7 +297,7 @@ private:
         if (k % 7 < 3) return of_r;
         const lie::Mass& mass = system.mass();
         const auto b = static_cast<size_t>(k / 14);
-        return of_r / (2 * std::sqrt(mass.J_bar[b].diagonal().minCoeff() / mass.m[b]) / L);
+        return of_r * L / (2 * std::sqrt(mass.J_bar[b].diagonal().minCoeff() / mass.m[b]));
     }
 
     /// Size of the first step [s], for which the error of backward Euler is about the tolerance. IDA's own
@@ -359,7 +339,7 @@ private:
     /// Restarts behind a break point of time, with the state that IDA has reached before it.
     void pass_break()
     {
-        read(t, y.get(), internal);
+        equations.read(t, map(y.get()), internal);
         internal.t = at_break + lie::break_distance(at_break);
         at_break = 0;
         to_restart = true;
@@ -372,7 +352,7 @@ private:
         const double from = before.t, h = t - from;
         const auto path = [&](double s, lie::State& x) {
             check(IDAGetDky(ida_memory.get(), from + s * h, 0, at_node.get()), "IDAGetDky");
-            read(from + s * h, at_node.get(), x);
+            equations.read(from + s * h, map(at_node.get()), x);
         };
         constexpr double at_begin = 1e-9;
         const lie::SwitchSearch::Crossing crossing = switches.first(after, path, at_begin * last_length / h);
@@ -407,28 +387,27 @@ private:
         check(code, "IDASolve");
         has_stepped = true;
         if (follows) {
-            read(t, y.get(), after = before);
+            equations.read(t, map(y.get()), after = before);
             if (counts_turns && repeat_shorter()) return;
             if (switches.is_needed() && return_to_switch()) return;
             last_length = t - before.t;
         }
         if (equations.form != RpForm::ggl && system.rows() > 0) watch_rank();
         update_internal_states();
-        if (follows) read(t, y.get(), before = internal);
+        if (follows) equations.read(t, map(y.get()), before = internal);
         if (at_break > 0 && code == IDA_TSTOP_RETURN) pass_break();
     }
 
     void update_internal_states()
     {
         if (internal.discrete_state.empty() && internal.internal_state.empty()) return;
-        read(t, y.get(), internal);
+        equations.read(t, map(y.get()), internal);
         const lie::State& now = updated_internal_state(internal);
         equations.set_internal_state(now.internal_state);
         internal.internal_state = now.internal_state;
         if (now.discrete_state == internal.discrete_state) return;
         internal = now;
-        to_restart = !equations.set_discrete_state(internal.discrete_state, t, in_SI(y.get(), y_SI),
-                                                   in_SI(ydot.get(), ydot_SI));
+        to_restart = !equations.set_discrete_state(internal.discrete_state, t, map(y.get()), map(ydot.get()));
     }
 
     /// At every step while the condition is less than `far` of that at the start, otherwise at every fifth: a
@@ -439,7 +418,7 @@ private:
         constexpr int interval = 5;
         if (passed_singularity || (last_condition_ratio > far && ++unwatched < interval)) return;
         unwatched = 0;
-        read(t, y.get(), updated = internal);
+        equations.read(t, map(y.get()), updated = internal);
         if (!watched) watched = std::make_unique<lie::Saddle>(system);
         double condition = 0;
         try {
@@ -490,8 +469,7 @@ private:
         Ida& ida = *static_cast<Ida*>(self);
         try {
             auto out = map(F);
-            ida.equations.residual(t, ida.in_SI(y, ida.y_SI), ida.in_SI(ydot, ida.ydot_SI), out);
-            if (ida.has_units) out.array() *= ida.units.equation.array();
+            ida.equations.residual(t, map(y), map(ydot), out);
             if (std::isfinite(out.sum())) return 0;
             for (int k = 0; k < ida.equations.size(); ++k)
                 if (!std::isfinite(out[k])) {
@@ -511,16 +489,10 @@ private:
     {
         Ida& ida = *static_cast<Ida*>(self);
         try {
-            const lie::Klu& J =
-                ida.equations.jacobian(t, ida.in_SI(y, ida.y_SI), ida.in_SI(ydot, ida.ydot_SI), c_j);
+            const lie::Klu& J = ida.equations.jacobian(t, map(y), map(ydot), c_j);
             std::copy(J.columns().begin(), J.columns().end(), SUNSparseMatrix_IndexPointers(out));
             std::copy(J.rows().begin(), J.rows().end(), SUNSparseMatrix_IndexValues(out));
-            double* const value = SUNSparseMatrix_Data(out);
-            std::copy(J.value.begin(), J.value.end(), value);
-            if (!ida.has_units) return 0;
-            for (int column = 0; column < J.size(); ++column)
-                for (int k = J.columns()[column]; k < J.columns()[column + 1]; ++k)
-                    value[k] *= ida.units.equation[J.rows()[k]] * ida.units.unknown[column];
+            std::copy(J.value.begin(), J.value.end(), SUNSparseMatrix_Data(out));
             return 0;
         } catch (...) {
             ida.failure = std::current_exception();
@@ -552,9 +524,6 @@ private:
     Owned<SUNLinearSolver, SUNLinSolFree> linear;
     std::unique_ptr<void, Destroy<free_ida>> ida_memory;
 
-    RpEquations::Units units;  // of y, ẏ and of the residual of IDA; not used if has_units is false
-    bool has_units = false;
-    Eigen::VectorXd y_SI, ydot_SI, read_SI;
     double t = 0;  // time that the internal steps have reached [s]
     bool initialised = false;
     lie::State last;        // state that the last call returned

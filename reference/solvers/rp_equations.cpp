@@ -119,17 +119,22 @@ void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
         ydot.segment<14>(offset(b)) << motion.rdot, pdot, motion.rddot, pddot;
     }
     y.segment(first_lambda, m) = from.lambda;
+    if (!has_units()) return;
+    set_units(from);
+    y.array() /= unit_of_unknown.array();
+    ydot.array() /= unit_of_unknown.array();
 }
 
 bool RpEquations::set_discrete_state(const std::vector<int>& discrete_state, double t,
                                      const ConstVectorRef& y, const ConstVectorRef& ydot)
 {
     if (discrete_state == x.discrete_state) return true;
-    evaluate(t, y, ydot);
+    const auto at = in_SI(y, y_SI), rate = in_SI(ydot, ydot_SI);
+    evaluate(t, at, rate);
     const lie::Rows C_before = C;
     const lie::Loads load_before = load;
     x.discrete_state = discrete_state;
-    evaluate(t, y, ydot);
+    evaluate(t, at, rate);
     const auto differ = [](const Vec3& a, const Vec3& b) {
         return !((a - b).norm() <= 1e-12 * std::max({1.0, a.norm(), b.norm()}));
     };
@@ -147,39 +152,46 @@ void RpEquations::read(double t, const ConstVectorRef& y, lie::State& to) const
     for (int b = 0; b < bodies; ++b) {
         lie::Motion& motion = to.body[b];
         const Vec4 p = y.segment<4>(offset(b) + 3);
-        motion.r = origin + y.segment<3>(offset(b));
+        motion.r = origin + length * y.segment<3>(offset(b));
         motion.A = lie::rotation(p.normalized());
-        motion.rdot = y.segment<3>(offset(b) + 7);
+        motion.rdot = length * y.segment<3>(offset(b) + 7);
         motion.omega_bar = (2 / p.squaredNorm()) * (lie::G(p) * y.segment<4>(offset(b) + 10));
     }
 }
 
-RpEquations::Units RpEquations::units(const lie::State& at) const
+void RpEquations::set_units(const lie::State& at)
 {
-    Units u{Eigen::VectorXd::Ones(size()), Eigen::VectorXd::Ones(size())};
+    if (!has_units()) return;
     const double L = length;
+    unit_of_unknown.setOnes(size());
+    factor_of_equation.setOnes(size());
     for (int b = 0; b < bodies; ++b) {
-        u.unknown.segment<3>(offset(b)).setConstant(L);      // r
-        u.unknown.segment<3>(offset(b) + 7).setConstant(L);  // ṙ
-        u.equation.segment<3>(offset(b)).setConstant(1 / L);
-        u.equation.segment<3>(offset(b) + 7).setConstant(1 / L);
-        u.equation.segment<4>(offset(b) + 10).setConstant(1 / (L * L));
-        u.unknown[first_lambda + m + b] = L * L;
+        for (const int first : {offset(b), offset(b) + 7}) {  // r, ṙ
+            unit_of_unknown.segment<3>(first).setConstant(L);
+            factor_of_equation.segment<3>(first).setConstant(1 / L);
+        }
+        factor_of_equation.segment<4>(offset(b) + 10).setConstant(1 / (L * L));
+        unit_of_unknown[first_lambda + m + b] = L * L;
     }
-    lie::Rows rows(system.pattern());
-    system.variation(at, rows);
+    system.variation(at, C);
     for (int k = 0; k < m; ++k) {
         double sum = 0;
-        for (int n = rows.start[k]; n < rows.start[k + 1]; ++n)
-            sum += L * L * rows.entry[n].r.squaredNorm() + rows.entry[n].pi.squaredNorm();
+        for (int n = C.start[k]; n < C.start[k + 1]; ++n)
+            sum += L * L * C.entry[n].r.squaredNorm() + C.entry[n].pi.squaredNorm();
         const double row = sum > 0 ? std::exp2(std::round(0.5 * std::log2(sum))) : 1;  // unit of Φ
         for (const int first : {first_lambda, first_mu}) {
             if (first >= size()) continue;
-            u.unknown[first + k] = L * L / row;
-            u.equation[first + k] = 1 / row;
+            unit_of_unknown[first + k] = L * L / row;
+            factor_of_equation[first + k] = 1 / row;
         }
     }
-    return u;
+}
+
+Eigen::Map<const Eigen::VectorXd> RpEquations::in_SI(const ConstVectorRef& y, Eigen::VectorXd& work) const
+{
+    if (!has_units()) return {y.data(), y.size()};
+    work = unit_of_unknown.cwiseProduct(y);
+    return {work.data(), work.size()};
 }
 
 // --- the residual -----------------------------------------------------------------------------------------
@@ -216,6 +228,12 @@ void RpEquations::evaluate(double t, const ConstVectorRef& y, const ConstVectorR
 }
 
 void RpEquations::residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F)
+{
+    residual_in_SI(t, in_SI(y, y_SI), in_SI(ydot, ydot_SI), F);
+    if (has_units()) F.array() *= factor_of_equation.array();
+}
+
+void RpEquations::residual_in_SI(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F)
 {
     evaluate(t, y, ydot);
     const lie::Mass& mass = system.mass();
@@ -375,9 +393,10 @@ void RpEquations::declare_pairs()
 
 // --- the Jacobian: its values -----------------------------------------------------------------------------
 
-const lie::Klu& RpEquations::jacobian(double t, const ConstVectorRef& y, const ConstVectorRef& ydot,
+const lie::Klu& RpEquations::jacobian(double t, const ConstVectorRef& unknowns, const ConstVectorRef& rates,
                                       double c_j)
 {
+    const auto y = in_SI(unknowns, y_SI), ydot = in_SI(rates, ydot_SI);
     evaluate(t, y, ydot);
     system.second_variation(x, H);
     if (form != RpForm::index1) system.nu_variation(x, d_nu);
@@ -394,6 +413,7 @@ const lie::Klu& RpEquations::jacobian(double t, const ConstVectorRef& y, const C
     add_rows(c_j);
     add_pairs();
     add_loads();
+    if (has_units()) J.scale(factor_of_equation, unit_of_unknown);
     return J.compressed();
 }
 

@@ -40,6 +40,9 @@ enum class RpForm {
 /// followed by the constraint equations of RpForm. The rotational equation is that of 2.23, 4 Gᵀ J̄ G p̈ - 8
 /// Ġᵀ J̄ Ġ p + ..., up to a multiple of p. With this choice λ_P = 0 in the solution. ω̄ = T ṗ is the angular
 /// velocity of A(p/|p|) for any |p|, so the Jacobian is exact off the constraint |p| = 1 as well.
+///
+/// y and F have the unit of length ρ, and multipliers and rows of Φ units with which all numbers are those of
+/// a model of 1 m. The units are powers of two.
 class RpEquations {
 public:
     /// Copies the internal and discrete states of `start`. `alpha` [1/s] is the parameter of Baumgarte's
@@ -63,13 +66,6 @@ public:
     /// Replaces the internal states, which must not change the solutions.
     void set_internal_state(const std::vector<double>& internal_state) { x.internal_state = internal_state; }
 
-    /// Units of the unknowns and factors of the equations with which all numbers are those of a model with a
-    /// length ρ of 1 m: y = unknown ∘ y', F' = equation ∘ F. They are powers of two.
-    struct Units {
-        Eigen::VectorXd unknown, equation;
-    };
-    Units units(const lie::State& x) const;
-
     /// F(t, y, ẏ), size() components
     void residual(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
     /// ∂F/∂y + c_j ∂F/∂ẏ in compressed columns with a fixed pattern, evaluated with μ = 0. μ is zero up to
@@ -87,7 +83,8 @@ public:
     const RpForm form;
     const double alpha;
     const lie::Vec3 origin;  ///< r_0 [m]
-    /// ρ [m]: 1, or a mean radius of gyration of the bodies if that is beyond 1 cm to 100 m
+    /// ρ [m], the unit of length of y and F: 1, or a mean radius of gyration of the bodies if that is beyond
+    /// 1 cm to 100 m
     const double length;
 
 private:
@@ -122,6 +119,7 @@ private:
         int q, qdot;
     };
 
+    void residual_in_SI(double t, const ConstVectorRef& y, const ConstVectorRef& ydot, VectorRef F);
     void declare_pattern();
     void declare_entry(int k, int n);
     void find_pairs();
@@ -138,10 +136,17 @@ private:
     }
     void add(int handle, double entry) { J.add(handle, entry); }
     int offset(int b) const { return 14 * b; }
+    void set_units(const lie::State& at);
+    /// y in SI units; `work` keeps it
+    Eigen::Map<const Eigen::VectorXd> in_SI(const ConstVectorRef& y, Eigen::VectorXd& work) const;
+    bool has_units() const { return length != 1; }
 
     const int bodies, m;
     const double mu_of_rotation;       ///< 1/ρ² [1/m²]
     const int first_lambda, first_mu;  ///< λ, then λ_P; μ, then μ_P
+    /// Units of y, and factors of F; with has_units()
+    Eigen::VectorXd unit_of_unknown, factor_of_equation;
+    Eigen::VectorXd y_SI, ydot_SI;
 
     lie::State x;
     std::vector<Body> body;

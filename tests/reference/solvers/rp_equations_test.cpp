@@ -49,6 +49,17 @@ const TestModel test_models[] = {
              model.load(dae::TorsionSpring(0, Vec3::UnitX(), 1, Vec3::UnitX(), 70, 3, 0.1, start));
          });
      }},
+    {"bars of 10 km",
+     [](dae::Model& model, lie::State& x) {
+         constexpr double L = 1e4;
+         const Vec3 X = Vec3::UnitX(), inertia = L * L / 12 * Vec3(1, 0.01, 1);
+         tests::add_body(model, x, "a", 1, inertia, {0, L / 2, 0}, lie::Mat3::Identity(), {0, 0, 0.2 * L},
+                         {0.4, 0, 0});
+         tests::add_body(model, x, "b", 2, inertia, {0, 1.5 * L, 0}, lie::Mat3::Identity(), {0, 0, 0.4 * L});
+         model.constrain("A", dae::revolute(dae::ground, Vec3::Zero(), X, 0, {0, -L / 2, 0}, X));
+         model.constrain("B", dae::revolute(0, {0, L / 2, 0}, X, 1, {0, -L / 2, 0}, X));
+         dae::start(model, x);
+     }},
     {"hinge driver",
      [](dae::Model& model, lie::State& x) {
          const Vec3 X = Vec3::UnitX(), O = Vec3::Zero();

@@ -5,12 +5,12 @@
 #include "contact/normal/normal_law.hpp"
 #include "contact/shape.hpp"
 #include "dae/start/differences.hpp"
+#include "io/message.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 namespace hilda::contact {
 
@@ -25,13 +25,7 @@ constexpr double of_springs = 1e-2;     // of stiffness and damping from differe
 constexpr double on_surface = 1e-6;     // largest distance of a support point, relative to the size
 constexpr double off_direction = 1e-4;  // largest angle of its normal [rad]
 
-std::string number(double value)
-{
-    std::ostringstream text;
-    text.precision(4);
-    text << value;
-    return text.str();
-}
+std::string number(double value) { return io::formatted("%.4g", value); }
 
 /// The derivative of a number by differences, NaN where it is not accurate
 template <class Function>
@@ -58,6 +52,23 @@ public:
           owner(std::move(owner) + ", surface '" + surface.name() + "': "), out(out)
     {}
 
+    /// Adds the first finding.
+    void run() const
+    {
+        const std::array<Vec3, 4> directions = {Vec3(0.48, 0.6, 0.64), Vec3(-0.36, 0.8, -0.48),
+                                                Vec3(0.64, -0.6, -0.48), Vec3(-0.6, -0.48, 0.64)};
+        for (const Vec3& u : directions) {
+            try {
+                if (surface.convex() && !has_right_support(u)) return;
+                const Vec3 a = surface.project(length * u);
+                for (const double aside : {0., 1e-3, -1e-3})
+                    if (!is_right_at(a + aside * length * u)) return;
+            } catch (const lie::NumericalFailure&) {  // no projection, or outside of the surface
+            }
+        }
+    }
+
+private:
     /// Whether the functions at a are right
     bool is_right_at(const Vec3& a) const
     {
@@ -65,7 +76,7 @@ public:
         const Vec3 gradient = surface.gradient(a);
         const Mat3 hessian = surface.hessian(a);
         const double scale_0 = std::max(std::abs(all.G), length * gradient.norm());
-        if (std::abs(all.G - surface.value(a)) > of_surface * scale_0)
+        if (!(std::abs(all.G - surface.value(a)) <= of_surface * scale_0))
             return add("G of derivatives() is " + number(all.G) + ", value() is " + number(surface.value(a)),
                        a);
         return compare("gradient of derivatives()", all.gradient, gradient, 0, a) &&
@@ -94,7 +105,6 @@ public:
         return true;
     }
 
-private:
     bool add(const std::string& text, const Vec3& at) const
     {
         out.add(owner + text + ", at (" + number(at.x()) + ", " + number(at.y()) + ", " + number(at.z()) +
@@ -141,30 +151,13 @@ private:
     DerivativeFindings& out;
 };
 
-void check_surface(const Surface& surface, const std::string& owner, DerivativeFindings& out)
-{
-    const double length = surface.size() > 0 ? surface.size() : 1;
-    const std::array<Vec3, 4> directions = {Vec3(0.48, 0.6, 0.64), Vec3(-0.36, 0.8, -0.48),
-                                            Vec3(0.64, -0.6, -0.48), Vec3(-0.6, -0.48, 0.64)};
-    const SurfaceCheck check(surface, owner, out);
-    for (const Vec3& u : directions) {
-        try {
-            if (surface.convex() && !check.has_right_support(u)) return;
-            const Vec3 a = surface.project(length * u);
-            for (const double aside : {0., 1e-3, -1e-3})
-                if (!check.is_right_at(a + aside * length * u)) return;
-        } catch (const lie::NumericalFailure&) {  // no projection, or outside of the surface: the next point
-        }
-    }
-}
-
 }  // namespace
 
 void check_surfaces(const Shape& i, const Shape& j, const std::string& owner, DerivativeFindings& out)
 {
     for (const Shape* shape : {&i, &j})
         if (const Surface& surface = *shape->surface; out.is_next(typeid(surface)))
-            check_surface(surface, owner, out);
+            SurfaceCheck(surface, owner, out).run();
 }
 
 void check_normal_law(const NormalLaw& law, const NormalInput& at, const std::string& owner,
@@ -205,9 +198,9 @@ void check_normal_law(const NormalLaw& law, const NormalInput& at, const std::st
         const auto contradicts = [&](const std::string& text, double by_differences) {
             add(text + ", differences of force have " + number(by_differences));
         };
-        if (differ(K, by_overlap, of_springs) && std::abs(K - by_overlap) > 1e-6 * N / p.overlap)
+        if (differ(K, by_overlap, of_springs) && !(std::abs(K - by_overlap) <= 1e-6 * N / p.overlap))
             return contradicts("stiffness is " + number(K), by_overlap);
-        if (differ(D, by_rate, of_springs) && std::abs(D - by_rate) > 1e-6 * N / rate)
+        if (differ(D, by_rate, of_springs) && !(std::abs(D - by_rate) <= 1e-6 * N / rate))
             return contradicts("damping is " + number(D), by_rate);
         // a law without a spring has no energy
         if ((K != 0 || by_energy != 0) && differ(N, by_energy, of_energy))

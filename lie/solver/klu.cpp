@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hilda::lie {
 
@@ -106,28 +107,20 @@ void Klu::factor(const char* what)
         klu_symbolic* const symbolic = klu->orderings[ordering];
         klu_numeric* numeric =
             klu_factor(column_start.data(), row_index.data(), value.data(), symbolic, &klu->common);
-        if (numeric == nullptr || klu->common.status != KLU_OK) {
-            if (klu->numeric == nullptr)
-                klu->numeric = numeric, klu->symbolic = symbolic;
-            else
-                klu_free_numeric(&numeric, &klu->common);
-            return;
+        const bool is_factored = numeric != nullptr && klu->common.status == KLU_OK;
+        if (is_factored) klu_flops(symbolic, numeric, &klu->common);
+        if (is_factored && (klu->numeric == nullptr || klu->common.flops < operations)) {
+            operations = klu->common.flops;
+            std::swap(klu->numeric, numeric);
+            klu->symbolic = symbolic;
+            klu_rcond(symbolic, klu->numeric, &klu->common);
+            rcond = klu->common.rcond;
         }
-        klu_flops(symbolic, numeric, &klu->common);
-        const double of_this = klu->common.flops;
-        klu_rcond(symbolic, numeric, &klu->common);
-        if (rcond > 0 && of_this >= operations) {
-            klu_free_numeric(&numeric, &klu->common);
-            return;
-        }
-        klu_free_numeric(&klu->numeric, &klu->common);
-        klu->numeric = numeric, klu->symbolic = symbolic;
-        rcond = klu->common.rcond, operations = of_this;
+        klu_free_numeric(&numeric, &klu->common);
     };
-    const bool compared = size() <= most_compared;
-    if (compared) factor_with(amd);
+    if (size() <= most_compared) factor_with(amd);
     // The estimate of AMD is a lower bound of its operations.
-    if (!compared || rcond == 0 || operations > 2 * this->operations()) factor_with(colamd);
+    if (klu->numeric == nullptr || operations > 2 * this->operations()) factor_with(colamd);
     ++full_count;
     have_pivots = rcond > (klu->common.scale < 0 ? singular_when_scaled : 0);
     if (!have_pivots)

@@ -59,7 +59,7 @@ MJCF = """<mujoco model="arm"><worldbody><body name="upper"><joint name="shoulde
 
 STUDY = ["study", "energy", "--problem", "double_pendulum", "--integrator", "rA-half-1", "--steps", "1e-2,5e-3", "--end", "0.2",
          "--no-plot", "--quiet"]
-# name: the command, its inputs, its output ({} in the command), and whether it takes more time than the others
+# name: the command, its inputs, and the folder {} of its output: `new`, `empty`, or a result that is `begun` or `done`; None: no output
 COMMANDS = {
     "check": (["check", "arm.json"], ["arm.json"], None),
     "run": (["run", "arm.json", "--reactions", "--quiet", "--output", "{}", "--force"], ["arm.json"], "new"),

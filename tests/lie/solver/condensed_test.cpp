@@ -184,24 +184,23 @@ TEST_CASE("KLU replaces the condensed system while rows are nearly dependent", "
     entry[1].pi = entry[0].pi;
     // Row 1 equals row 0 up to 1e-5. S contains the square of the difference: the multipliers lose ten
     // digits, and the motion five, which are refined in a step.
-    entry[1].r = entry[0].r + 1e-5 * difference;
-    K.assemble({});
+    const auto solve_with = [&](double part) {
+        entry[1].r = entry[0].r + part * difference;
+        K.assemble({});
+        K.multiply(z, b);
+        c = b;
+        K.solve(b);
+    };
+    solve_with(1e-5);
     CHECK(K.factorizations() == 0);
-    K.multiply(z, b);
-    c = b;
-    K.solve(b);
     K.solve_in_step(c);
     const auto error_of_motion = [&](const Eigen::VectorXd& of) { return (of - z).head(12).norm(); };
     CHECK((b - z).norm() < 1e-3 * z.norm());
     CHECK(error_of_motion(b) < 1e-7 * z.norm());
     CHECK(error_of_motion(c) < 1e-10 * z.norm());
 
-    entry[1].r = entry[0].r + 1e-7 * difference;
-    K.assemble({});
+    solve_with(1e-7);
     CHECK(K.factorizations() == 1);
-    K.multiply(z, b);
-    c = b;
-    K.solve(b);
     lie::Saddle whole(graph);
     whole.assemble({});
     whole.solve(c);

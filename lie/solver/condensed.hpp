@@ -21,6 +21,7 @@
 
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
+#include "lie/solver/columns.hpp"
 #include "lie/solver/saddle_factors.hpp"
 
 #include <array>
@@ -57,8 +58,7 @@ public:
     long fill_in() const { return fill; }
 
 private:
-    static constexpr int most_rows = 4;                 ///< of a group
-    using Column = Eigen::Array<double, most_rows, 1>;  ///< one number for each row of a group
+    static constexpr int most_rows = 4;  ///< of a group
 
     /// Rows first … first + rows - 1, all with entries for the same bodies in the same order
     struct Group {
@@ -84,6 +84,9 @@ private:
     };
 
     void shift_diagonal(double shift);  ///< S ← S + shift D
+    void set_products();
+    bool factor_columns(double least);
+    void add_loads(Eigen::VectorXd& b);
     void take_right_side(const Eigen::VectorXd& b);
     void solve_multipliers();               ///< y ← S⁻¹ y
     void finish(Eigen::VectorXd& b) const;  ///< x = L⁻ᵀ (L⁻¹ f - Wᵀ y), λ = y; b holds L⁻¹ f on entry
@@ -101,16 +104,17 @@ private:
     std::map<int, std::vector<std::pair<int, int>>> at_body;  ///< groups at a body, and its index in them
     std::vector<int> order, position;       ///< of elimination: the groups, and the place of each group in it
     std::vector<std::vector<int>> below;    ///< off-diagonal blocks in the columns of each group
-    std::vector<Term> term;                 ///< of S
+    std::vector<Term> term;                 ///< of S, by kernel
+    std::vector<int> term_start;            ///< first index into `term` of each kernel
     std::vector<int> column, update_start;  ///< first index into `block` and `update`, by position in `order`
     std::vector<Block> block;
     std::vector<Update> update;
     /// The column of `value` and the number in it of the diagonal entry of each regularised row
     std::vector<std::pair<int, int>> regularised_at;
-    std::vector<Column> W, value;
-    std::vector<Column> divided;   ///< the blocks of the present column, divided by the pivots
-    std::vector<Column> diagonal;  ///< of S, by group: the reference of the pivots
-    std::vector<Column> y;         ///< right side and multipliers by group
+    Columns W, value;
+    Columns divided;   ///< the blocks of the present column, divided by the pivots
+    Columns diagonal;  ///< of S, by group: the reference of the pivots
+    Columns y;         ///< right side and multipliers by group
     double smallest = 1, products = 0;
     long fill = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Time of a complete step (loads, constraints, factorisation, Newton iteration, update) of the N-bar
-/// pendulum over N, for all fixed-step schemes and both linear solvers, at h = 1e-3 s.
+/// pendulum and of a chain of N hinges over N, for all fixed-step schemes and both linear solvers, at
+/// h = 1e-3 s.
 ///
 ///     cmake --preset native && cmake --build --preset native --target hilda_benchmarks
 ///     build/native/studies/hilda_benchmarks --benchmark_filter='step/rA-half-1/'
@@ -17,9 +18,11 @@ namespace {
 
 using namespace hilda;
 
-void step(benchmark::State& timer, const lie::Scheme& scheme, lie::LinearSolver solver)
+using Chain = const dae::Description& (*)(long bars);
+
+void step(benchmark::State& timer, Chain chain, const lie::Scheme& scheme, lie::LinearSolver solver)
 {
-    const dae::Description& d = studies::chain(timer.range(0));
+    const dae::Description& d = chain(timer.range(0));
     const auto integrator = scheme.make(*d.model, {.linear_solver = solver});
     lie::State x = d.x;
     for (auto _ : timer) {
@@ -41,12 +44,15 @@ const bool registered_step = [] {
         for (const auto& [name, solver] : {std::pair{"klu", lie::LinearSolver::klu},
                                            std::pair{"condensed", lie::LinearSolver::condensed}}) {
             if (!saddle && solver == lie::LinearSolver::condensed) continue;
-            auto* b = benchmark::RegisterBenchmark(("step/" + scheme.name + "/" + name).c_str(), step, scheme,
-                                                   solver);
-            for (const int bars : {2, 8, 64, 256, 1024, 4096}) b->Arg(bars);
-            b->Unit(benchmark::kMicrosecond)->Complexity([](benchmark::IterationCount n) {
-                return static_cast<double>(n);
-            });
+            for (const auto& [joint, chain] : {std::pair<const char*, Chain>{"step/", studies::chain},
+                                               {"step-hinges/", studies::hinge_chain}}) {
+                auto* b = benchmark::RegisterBenchmark((joint + scheme.name + "/" + name).c_str(), step,
+                                                       chain, scheme, solver);
+                for (const int bars : {2, 8, 64, 256, 1024, 4096}) b->Arg(bars);
+                b->Unit(benchmark::kMicrosecond)->Complexity([](benchmark::IterationCount n) {
+                    return static_cast<double>(n);
+                });
+            }
         }
     }
     return true;

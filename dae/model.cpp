@@ -3,6 +3,7 @@
 #include "dae/model.hpp"
 
 #include "dae/constraints/dp1.hpp"
+#include "dae/tree.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -204,6 +205,8 @@ void Model::set_internal_state_at_start(State& x) const
     update_constraint_states(x, true);
     for (const auto& f : force) f->update_internal_state(x);
 }
+
+void Model::set_tree(const State& x) { joints = find_tree(*this, x); }
 
 bool Model::internal_states_are_history() const
 {

@@ -217,6 +217,9 @@ public:
     /// Throws NumericalFailure "motion_jumps" if a prescribed motion jumps itself.
     bool velocity_jumps(double t, double t_end) const override;
     bool counts_turns() const override { return block_counts_turns; }
+    const lie::Tree& tree() const override { return joints; }
+    /// Finds the tree of the joints in a consistent state. Called by dae::start().
+    void set_tree(const State& x);
     double potential_energy(const State& x) const override;
     /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
     /// same torque, and updates the internal states of forces and general constraints.
@@ -266,6 +269,7 @@ private:
 
     lie::Mass inertia;
     lie::Rows rows_pattern;
+    lie::Tree joints{.joint = {}, .refusal = "the model has not been started"};
 };
 
 /// Resultant constraint force F = -Φ_rᵀ λ [N, global frame] and torque T = -Π̄ᵀ λ [N m, body frame] on one

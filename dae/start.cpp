@@ -351,6 +351,7 @@ StartReport start(Model& model, State& x, const StartOptions& options)
     for (const int k : report.redundant > 0 ? model.active_rows() : dropped)
         check_redundant_row(model, model.all_rows()[k], x);
     set_spring_limits(model, K, x);
+    model.set_tree(x);
     for (std::string& text : wrong_derivatives(model, x)) report.warnings.push_back(std::move(text));
     return report;
 }

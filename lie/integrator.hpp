@@ -45,6 +45,9 @@ public:
     /// Chooses the pivots in the state x for steps of the length h.
     virtual void choose_pivots(const State& /*x*/, double /*h*/) {}
 
+    /// Sets the multipliers of a node if Settings::multipliers is false and the scheme leaves them out.
+    virtual void set_multipliers(State& /*node*/) {}
+
     /// Whether a step of the length h consists of internal steps that the scheme chooses. Such a scheme calls
     /// System::accepted() for each of them and for its result.
     virtual bool chooses_internal_steps() const { return false; }

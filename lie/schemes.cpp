@@ -33,6 +33,11 @@ bool Scheme::uses_option(const std::string& option) const
     return std::find(names.begin(), names.end(), option) != names.end();
 }
 
+bool Scheme::takes(const System& system) const
+{
+    return supports.contains(features_of(system)) && (!needs_tree || system.tree().refusal.empty());
+}
+
 std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& settings) const
 {
     const Features missing = features_of(system).without(supports);
@@ -44,6 +49,9 @@ std::unique_ptr<Integrator> Scheme::make(const System& system, const Settings& s
         reject("integrator " + name,
                "does not support " + std::string(text) + "; integrators that do are " + names, name);
     }
+    if (needs_tree && !system.tree().refusal.empty())
+        throw InvalidInput("integrator " + name +
+                           " integrates trees of joints only: " + system.tree().refusal);
     if (system.keeps_redundant_rows() && settings.linear_solver == LinearSolver::klu)
         reject("integrator " + name,
                "redundant rows (\"redundant\": \"keep\" in the model file) need the condensed linear solver",

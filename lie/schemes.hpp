@@ -35,7 +35,7 @@ struct Scheme {
     std::string description = {};  ///< one line: the textbook name, and what distinguishes the scheme
     int order = 1;                 ///< of r, A, ṙ, ω̄ for smooth motions
     int order_lambda = 1;          ///< of the multipliers, for a start in motion
-    std::string formulation;       ///< rA, rp or reps
+    std::string formulation;       ///< rA, rp, reps or tree
     std::string unknowns;          ///< of the Newton iteration
     /// Names of the options of Settings that the scheme uses, as in run::setting_options(): --tolerance. An
     /// option that none of the integrators of a command uses is refused.
@@ -52,6 +52,8 @@ struct Scheme {
     /// Largest h ω for which an undamped oscillator does not gain energy, at most 2. The stability limits of
     /// forces are those of 2.
     double stability = 2;
+    /// Whether the scheme takes only systems whose joints form a tree, see System::tree()
+    bool needs_tree = false;
     Features supports = {};  ///< what the scheme integrates besides holonomic constraints
     /// Whether the energy of a conservative system may drift in one direction, by an error of the order of
     /// the scheme. Other schemes of fixed step conserve or dissipate it.
@@ -64,6 +66,8 @@ struct Scheme {
     std::vector<std::string> option_names() const;
     bool uses_option(const std::string& option) const;
 
+    /// Whether make() accepts the system
+    bool takes(const System& system) const;
     /// Constructs the integrator. Throws InvalidInput if the system has a feature that the scheme does not
     /// take, and for a value of Settings::of_scheme that is not finite.
     std::unique_ptr<Integrator> make(const System& system, const Settings& settings) const;

@@ -7,6 +7,12 @@
 
 namespace hilda::lie {
 
+const Tree& System::tree() const
+{
+    static const Tree none{.joint = {}, .refusal = "the system does not describe its joints"};
+    return none;
+}
+
 double energy(const System& system, const State& x)
 {
     double e = system.potential_energy(x);

@@ -21,6 +21,7 @@
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
 #include "lie/state.hpp"
+#include "lie/tree/tree.hpp"
 
 #include <cmath>
 #include <limits>
@@ -84,6 +85,10 @@ public:
     /// The largest |Φ_k| in x. A system with rows of other units divides by the lengths of their variations.
     /// NaN counts as larger than any number.
     virtual PositionError position_error(const State& x) const;
+
+    /// The joints, if the constraint rows are those of a tree of joints; otherwise the reason. Constant from a
+    /// start on. The default is for systems that do not describe their joints.
+    virtual const Tree& tree() const;
 
     // Derivatives for exact Newton matrices. Schemes with a frozen matrix do not use them. The defaults of
     // the derivatives of the rows are central differences. They are slow; their relative error is about

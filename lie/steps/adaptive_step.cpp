@@ -27,7 +27,8 @@ void AdaptiveStep<Method>::set_tolerance_limits()
     const Tolerances checked(settings, scheme_name());
     rtol = checked.rtol, atol = checked.atol;
     largest_turn = model.counts_turns() ? largest_counted_turn : largest_internal_turn;
-    for (Eigen::VectorXd* v : {&tolerance, &change, &rate, &next_rate}) v->setZero(12 * bodies);
+    for (Eigen::VectorXd* v : {&tolerance, &size}) v->setZero(12 * bodies);
+    for (Eigen::VectorXd* v : {&change, &rate, &next_rate}) v->setZero(this->variables());
 }
 
 template <class Method>
@@ -80,14 +81,17 @@ void AdaptiveStep<Method>::start()
 template <class Method>
 void AdaptiveStep<Method>::choose_first_step(double smallest)
 {
-    theta.setZero();
+    this->begin_stages();
     set_slope(x_n, rate);
     set_tolerances(x_n, x_n, rtol, atol, tolerance);
     for (int i = 0; i < bodies; ++i) {
         const Motion& body = x_n.body[i];
-        change.segment<12>(12 * i) << body.r, Vec3::Zero(), body.rdot, body.omega_bar;
+        size.segment<12>(12 * i) << body.r, Vec3::Zero(), body.rdot, body.omega_bar;
     }
-    const FirstStep first{rms_over(tolerance, change), rms_over(tolerance, rate)};
+    const auto rms = [this](const Eigen::VectorXd& of) {
+        return std::sqrt(this->square_over(tolerance, of) / static_cast<double>(tolerance.size()));
+    };
+    const FirstStep first{rms_over(tolerance, size), rms(rate)};
     const double euler = std::min(first.euler(), limit());
     change = euler * rate;
     place(node, change);
@@ -97,7 +101,7 @@ void AdaptiveStep<Method>::choose_first_step(double smallest)
         set_accelerations(node);
         set_slope(node, next_rate);
         change = (next_rate - rate) / euler;
-        control.h = first.of_order(this->control_order(), rms_over(tolerance, change));
+        control.h = first.of_order(this->control_order(), rms(change));
     } catch (const NumericalFailure&) {
         control.h = 0.01 * euler;
     }
@@ -283,6 +287,7 @@ void AdaptiveStep<Method>::fail(double h, double norm) const
 }
 
 template class AdaptiveStep<RungeKuttaStep>;
+template class AdaptiveStep<TreeRungeKuttaStep>;
 template class AdaptiveStep<RadauStep>;
 
 }  // namespace hilda::lie

@@ -15,7 +15,7 @@
 
 namespace hilda::lie {
 
-/// Internal steps of a method, chosen from rtol and atol. Method is RungeKuttaStep or RadauStep. step()
+/// Internal steps of a method, chosen from rtol and atol. Method is RungeKuttaStep, TreeRungeKuttaStep or RadauStep. step()
 /// evaluates the continuous extension at its end, so that the output instants do not affect the internal
 /// steps.
 ///
@@ -56,7 +56,7 @@ public:
 private:
     using Method::assemble_once, Method::bodies, Method::K, Method::model, Method::place,
         Method::refuse_history, Method::scheme_name, Method::set_accelerations, Method::set_slope,
-        Method::settings, Method::theta, Method::unreached, Method::x_n;
+        Method::settings, Method::unreached, Method::x_n;
 
     void set_tolerance_limits();
     void start();
@@ -97,13 +97,14 @@ private:
     bool has_all_stages = false;
     StepControl control;
     State node;  ///< workspace: a state inside the step
-    Eigen::VectorXd tolerance, change, rate, next_rate;
+    Eigen::VectorXd tolerance, size, change, rate, next_rate;
     State pivots_before;         ///< the pivots at the beginning of the step
     long factorizations = 0;     ///< at the time of pivots_before
     std::string status, reason;  ///< of the last attempt if it failed; otherwise empty
 };
 
 extern template class AdaptiveStep<RungeKuttaStep>;
+extern template class AdaptiveStep<TreeRungeKuttaStep>;
 extern template class AdaptiveStep<RadauStep>;
 
 /// Adds a method to the list: with a fixed step, and AdaptiveStep as its adaptive form. `more` are functions

@@ -22,6 +22,17 @@ public:
 protected:
     using Vec12 = Eigen::Matrix<double, 12, 1>;
 
+    /// Number of the variables (r, θ, ṙ, ω̄) of all bodies
+    int variables() const { return 12 * bodies; }
+    /// Makes x_n the origin of the variables, before the first slope of a step from there.
+    void begin_stages() { theta.setZero(); }
+    /// Square of the Euclidean norm of an error of the variables, divided by the tolerances of (r, θ, ṙ, ω̄) of
+    /// the bodies
+    double square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error) const
+    {
+        return error.cwiseQuotient(tolerance).squaredNorm();
+    }
+
     /// slope = d/dt (r, θ, ṙ, ω̄) of the stage x, whose θ place() has set
     void set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const;
 

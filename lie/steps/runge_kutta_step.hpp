@@ -5,17 +5,23 @@
 
 #include "lie/steps/local_coordinate_step.hpp"
 #include "lie/steps/tableau.hpp"
+#include "lie/steps/tree_step.hpp"
 
 namespace hilda::lie {
 
-/// One step of a tableau, with projection. As an integrator it takes steps of the given length.
-class RungeKuttaStep : public LocalCoordinateStep {
+/// One step of a tableau in the variables of Coordinates: LocalCoordinateStep with projection, or TreeStep. As
+/// an integrator it takes steps of the given length.
+template <class Coordinates>
+class ExplicitStep : public Coordinates {
 public:
-    RungeKuttaStep(const System& model, const Settings& settings, const Tableau& tableau);
+    ExplicitStep(const System& model, const Settings& settings, const Tableau& tableau);
 
     int step(State& x, double h) override;
 
 protected:
+    using Attempt = typename Coordinates::Attempt;
+    using Coordinates::x_n, Coordinates::model;
+
     /// Sets x to the end of a step of the length h from x_n: stages, projection, accelerations, and the slope
     /// there. Returns the number of Newton steps of the projection. x has the discrete state and the internal
     /// states of x_n.
@@ -45,7 +51,7 @@ protected:
     }
 
     const Tableau& tableau;
-    Eigen::MatrixXd slope;  ///< column i: d/dt (r, θ, ṙ, ω̄) of stage i
+    Eigen::MatrixXd slope;  ///< column i: the derivative of the variables at stage i
 
 private:
     void set_stage(int i, State& x, double h);
@@ -55,5 +61,11 @@ private:
     Eigen::VectorXd change;
     std::vector<double> weights;
 };
+
+extern template class ExplicitStep<LocalCoordinateStep>;
+extern template class ExplicitStep<TreeStep>;
+
+using RungeKuttaStep = ExplicitStep<LocalCoordinateStep>;
+using TreeRungeKuttaStep = ExplicitStep<TreeStep>;
 
 }  // namespace hilda::lie

@@ -41,7 +41,8 @@ Schemes StudyContext::schemes(const std::vector<std::string>& defaults) const
             for (const lie::Scheme& s : lie::schemes())
                 if (s.name == scheme) selected.push_back(&s);
         if (defaults.empty())
-            for (const lie::Scheme& s : lie::schemes()) selected.push_back(&s);
+            for (const lie::Scheme& s : lie::schemes())
+                if (!s.needs_tree) selected.push_back(&s);  // for all mechanisms
     }
     for (const lie::Scheme*& scheme : selected)
         for (const std::string& option : options.given)

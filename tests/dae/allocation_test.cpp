@@ -37,6 +37,7 @@ TEST_CASE("a step of a mechanism with drivers, springs, internal states and expr
                                  {io::Expression("t"), io::Expression("0"), io::Expression("cos(3*t)")}));
         if (s.supports.contains(lie::Feature::history)) model.load(tests::Bristle(0, 2, 0.1, 1e-3));
         dae::start(model, x, {.fix_initial = true});
+        if (!s.takes(model)) continue;
         const auto integrator = s.make(model, {});
         lie::March march(x, *integrator, 1e-3);
         for (int n = 0; n < 5; ++n) march.advance({});

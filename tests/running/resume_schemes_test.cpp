@@ -41,7 +41,7 @@ TEST_CASE("each scheme with adaptive steps continues from a checkpoint with the 
     dae::start(d);
     for (const lie::Scheme& listed : lie::schemes()) {
         const lie::Scheme& scheme = listed.with_adaptive_steps();
-        if (!scheme.adaptive || !scheme.resumes) continue;
+        if (!scheme.adaptive || !scheme.resumes || !scheme.takes(*d.model)) continue;
         const lie::Settings settings{.linear_solver = solver, .rtol = 1e-8};
         const double h = name == "andrews_squeezer" ? 6e-4 : 2e-2;
         constexpr long half = 25;
@@ -94,7 +94,7 @@ TEST_CASE("each scheme continues from a checkpoint with the same digits", "[run]
         if (&d == &without && has_history) continue;  // of a contact
         if (!d.model->general_constraints().empty() && !scheme.supports.contains(lie::Feature::nonholonomic))
             continue;
-        if (!scheme.supports.contains(lie::features_of(*d.model))) continue;
+        if (!scheme.takes(*d.model)) continue;
         const lie::Settings settings{
             .linear_solver = regularised ? lie::LinearSolver::klu : lie::LinearSolver::automatic,
             .reparametrise = true};

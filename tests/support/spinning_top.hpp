@@ -32,6 +32,10 @@ class SpinningTop final : public lie::System {
 public:
     explicit SpinningTop(bool free = false) : free(free)
     {
+        lie::TreeJoint joint;
+        joint.kind = free ? lie::TreeJoint::Kind::free : lie::TreeJoint::Kind::ball;
+        if (!free) joint.s_bar_j = s_bar;
+        joints.joint.push_back(joint);
         inertia.m = {2.0};
         inertia.J_bar = {Vec3(0.05, 0.08, 0.06).asDiagonal()};
         if (free) return;
@@ -43,6 +47,7 @@ public:
 
     const lie::Mass& mass() const override { return inertia; }
     const lie::Rows& pattern() const override { return rows_pattern; }
+    const lie::Tree& tree() const override { return joints; }
 
     void loads(const lie::State&, lie::Loads& out) const override
     {
@@ -87,6 +92,7 @@ public:
 private:
     lie::Mass inertia;
     lie::Rows rows_pattern;
+    lie::Tree joints;
 };
 
 }  // namespace hilda::tests

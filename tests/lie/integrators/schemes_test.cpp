@@ -120,6 +120,7 @@ TEST_CASE("a step that fails does not change the state", "[lie][newton]")
 {
     const tests::SpinningTop top;
     for (const lie::Scheme& s : lie::schemes()) {
+        if (s.needs_tree) continue;  // no iteration that could fail
         const auto integrator = s.make(top, {.tolerance = 1e-300, .max_iterations = 2});
         for (const bool moving : {false, true}) {
             lie::State x = top.start();

@@ -68,7 +68,7 @@ std::vector<lie::Scheme> schemes_for(const lie::System& system)
     std::vector<lie::Scheme> chosen;
     for (const lie::Scheme& s : lie::schemes()) {
         INFO(s.name);
-        if (s.supports.contains(lie::features_of(system)))
+        if (s.takes(system))
             chosen.push_back(s);
         else
             CHECK_THROWS_AS(s.make(system, {}), lie::InvalidInput);

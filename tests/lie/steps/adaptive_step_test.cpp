@@ -23,7 +23,7 @@ std::vector<const lie::Scheme*> adaptive_forms()
 {
     std::vector<const lie::Scheme*> all;
     for (const lie::Scheme& s : lie::schemes())
-        if (s.adaptive_form) all.push_back(s.adaptive_form.get());
+        if (s.adaptive_form && !s.needs_tree) all.push_back(s.adaptive_form.get());
     return all;
 }
 
@@ -70,7 +70,7 @@ private:
 /// Gives access to one step and its continuous extension.
 class OneStep final : public lie::RungeKuttaStep {
 public:
-    using RungeKuttaStep::RungeKuttaStep;
+    using ExplicitStep::ExplicitStep;
     /// The state at x.t + s h of a step of the length h
     State inside(const State& x, double s, double h)
     {

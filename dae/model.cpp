@@ -31,22 +31,24 @@ int Model::add(Body b)
     if (b.name.empty()) lie::reject("dae::Model::add", "the name of a body must not be empty", "''");
     if (b.name == "ground")
         lie::reject("dae::Model::add", "the name 'ground' is reserved for the fixed body", "'ground'");
-    for (const Body& other : body)
-        if (other.name == b.name)
-            lie::reject("dae::Model::add", "two bodies have the same name", "'" + b.name + "'");
+    if (number_of_body.contains(b.name))
+        lie::reject("dae::Model::add", "two bodies have the same name", "'" + b.name + "'");
     b.validate();
+    const auto number = static_cast<int>(body.size());
+    number_of_body.emplace(b.name, number);
     inertia.m.push_back(b.m);
     inertia.J_bar.push_back(b.J_bar);
     body.push_back(std::move(b));
-    return static_cast<int>(body.size()) - 1;
+    return number;
 }
 
 int Model::find(const std::string& name) const
 {
     if (name == "ground") return ground;
-    for (size_t k = 0; k < body.size(); ++k)
-        if (body[k].name == name) return static_cast<int>(k);
-    lie::reject("dae::Model::find", "no body has this name", "'" + name + "'");
+    const auto found = number_of_body.find(name);
+    if (found == number_of_body.end())
+        lie::reject("dae::Model::find", "no body has this name", "'" + name + "'");
+    return found->second;
 }
 
 void Model::constrain(const std::string& name, Blocks rows)
@@ -243,10 +245,11 @@ Model::StableStep Model::stable_step(const State& x, const lie::Scheme& scheme) 
     return smallest;
 }
 
-void Model::drop(int k)
+void Model::drop(const std::vector<int>& rows)
 {
-    std::erase(active, k);
-    dropped.insert(std::lower_bound(dropped.begin(), dropped.end(), k), k);
+    dropped.insert(dropped.end(), rows.begin(), rows.end());
+    std::sort(dropped.begin(), dropped.end());
+    std::erase_if(active, [&](int k) { return std::binary_search(dropped.begin(), dropped.end(), k); });
     set_pattern();
 }
 

@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace hilda::dae {
@@ -160,7 +161,7 @@ public:
     /// Numbers of the rows that are part of the equations, and of those removed as redundant; ascending
     const std::vector<int>& active_rows() const { return active; }
     const std::vector<int>& dropped_rows() const { return dropped; }
-    void drop(int row);  ///< removes a row from the equations
+    void drop(const std::vector<int>& rows);  ///< removes rows from the equations
     const std::string& constraint_name(int constraint) const { return constraint_names[constraint]; }
     int constraints() const { return static_cast<int>(constraint_names.size()); }
     std::string name_of(const Row& row) const;
@@ -241,6 +242,7 @@ private:
     std::string name_of(const Constraint& c, int k) const;  ///< name of its row k
 
     std::vector<Body> body;
+    std::unordered_map<std::string, int> number_of_body;  ///< by its name
     std::vector<std::string> constraint_names;
     std::unordered_set<std::string> used_names;  ///< names of all constraints
     std::vector<Row> row;

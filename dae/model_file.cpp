@@ -69,35 +69,30 @@ public:
             model.keep_redundant = o.one_of("redundant", {"drop", "keep"}, about) == "keep";
         }
         bodies(o);
-        o.record(
-            "constraints",
-            each(o, "constraints", "any_constraint",
-                 {"Joints, drivers and basic constraints. Redundant rows are detected at the start, reported "
-                  "and removed, unless the model has redundant = keep.",
-                  R"([{"type": "spherical", "body_i": "ground", "body_j": "ball"}])"},
-                 [this](const Json& v, const std::string& at) { return constraint(v, at); }));
-        o.record("forces",
-                 each(o, "forces", "any_force",
+        optional_list(
+            o, "constraints", "any_constraint",
+            {"Joints, drivers and basic constraints. Redundant rows are detected at the start, reported "
+             "and removed, unless the model has redundant = keep.",
+             R"([{"type": "spherical", "body_i": "ground", "body_j": "ball"}])"},
+            [this](const Json& v, const std::string& at) { return constraint(v, at); });
+        optional_list(o, "forces", "any_force",
                       {"Forces and torques other than gravity, constraint forces and contact forces.",
                        R"([{"type": "force", "body": "ball", "frame": "global", "components": [1, 0, 0]}])"},
-                      [this](const Json& v, const std::string& at) { return load(v, at); }));
+                      [this](const Json& v, const std::string& at) { return load(v, at); });
         contacts(o);
         if (o.given("outputs"))
-            o.record("outputs",
-                     each(o, "outputs", "any_output",
+            optional_list(o, "outputs", "any_output",
                           {"Quantities for the table outputs.csv of a run.",
                            R"([{"name": "tip", "type": "point", "body": "bar", "point_bar": [0.5, 0, 0]}])"},
-                          [this](const Json& v, const std::string& at) { return output(v, at); }));
+                          [this](const Json& v, const std::string& at) { return output(v, at); });
         if (o.given("events"))
-            o.record(
-                "events",
-                each(
-                    o, "events", "event",
-                    {"Instants at which a formula is zero: they are rows of events.csv, or end the run. Used "
-                     "by hilda run.",
-                     R"([{"name": "lowest", "value": "bar.vz", "direction": "rising"}])"},
-                    [this](const Json& v, const std::string& at) { return event(v, at); }));
-        out.text = written(o.finish()) + "\n";
+            optional_list(
+                o, "events", "event",
+                {"Instants at which a formula is zero: they are rows of events.csv, or end the run. Used "
+                 "by hilda run.",
+                 R"([{"name": "lowest", "value": "bar.vz", "direction": "rising"}])"},
+                [this](const Json& v, const std::string& at) { return event(v, at); });
+        out.text = canonical_text(o.finish());
         if (ignored > 0)
             out.warnings.push_back(ignored_place +
                                    ": f_dot and f_ddot are ignored, f is differentiated exactly; in " +
@@ -128,8 +123,8 @@ private:
                {"Bodies of the model, at least one of them with mass. Their order is the order of the "
                 "columns in the results.",
                 R"([{"name": "ball", "mass": 1, "inertia": [0.004, 0.004, 0.004], "r": [0, 0, 0.1]}])"});
-        o.record("bodies", each(o.list("bodies", true), o.pointer("bodies"),
-                                [this](const Json& v, const std::string& at) { return read_body(v, at); }));
+        record_list(o, "bodies", o.list("bodies", true),
+                    [this](const Json& v, const std::string& at) { return read_body(v, at); });
         if (model.all_bodies().empty())
             o.fail("bodies", "a model must have at least one body with mass, got none");
     }
@@ -152,25 +147,57 @@ private:
 
     /// The same for a list that may be missing, whose elements have this definition in the schema
     template <class Read>
-    static Json each(ObjectReader& o, std::string_view key, const std::string& definition, const About& about,
-                     Read read)
+    void optional_list(ObjectReader& o, std::string_view key, const std::string& definition,
+                       const About& about, Read read)
     {
         o.note(key, R"("type": "array", "default": [], "items": {"$ref": "#/$defs/)" + definition + R"("})",
                about);
-        return each(o.list(key, false), o.pointer(key), read);
+        record_list(o, key, o.list(key, false), read);
     }
 
-    /// Reads the elements of a list and returns their canonical forms. Elements with a null result are
-    /// omitted.
+    /// Reads the elements of a list and records the text of their canonical forms. Elements with a null
+    /// result are omitted. Only the text is kept: the tree of the elements needs many times its memory.
     template <class Read>
-    static Json each(const Json::List& list, const std::string& pointer, Read read)
+    void record_list(ObjectReader& o, std::string_view key, const Json::List& list, Read read)
     {
-        Json::List recorded;
+        const std::string pointer = o.pointer(key);
+        std::string text = "[";
         for (size_t k = 0; k < list.size(); ++k) {
-            Json element = read(list[k], pointer_to(pointer, std::to_string(k)));
-            if (element.members() != nullptr) recorded.push_back(std::move(element));
+            const Json element = read(list[k], pointer_to(pointer, std::to_string(k)));
+            if (element.members() == nullptr) continue;
+            text += text.size() > 1 ? ",\n    " : "\n    ";
+            append_deeper(text, written(element), "    ");
         }
-        return recorded;
+        text += text.size() > 1 ? "\n  ]" : "]";
+        list_text[std::string(key)] = std::move(text);
+        o.record(key, {});  // its place among the keys
+    }
+
+    /// Appends a canonical text whose lines after the first are indented further.
+    static void append_deeper(std::string& to, std::string_view text, std::string_view indent)
+    {
+        for (size_t end = 0; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1))
+            to.append(text.substr(0, end + 1)) += indent;
+        to += text;
+    }
+
+    /// The text of written() for the recorded members of the model and its lists
+    std::string canonical_text(const Json& recorded) const
+    {
+        std::string text = "{";
+        size_t size = 4096;  // of the other members
+        for (const auto& list : list_text) size += list.second.size();
+        text.reserve(size);
+        for (const Json::Member& m : *recorded.members()) {
+            text += text.size() > 1 ? ",\n  \"" : "\n  \"";
+            (text += m.key) += "\": ";
+            if (const auto list = list_text.find(m.key); list != list_text.end())
+                text += list->second;
+            else
+                append_deeper(text, written(m.value), "  ");
+        }
+        text += "\n}\n";
+        return text;
     }
 
     Json read_body(const Json& v, const std::string& at)
@@ -420,6 +447,7 @@ private:
     Model& model;
     std::map<std::string, int> by_name;
     std::map<int, int> by_id;
+    std::map<std::string, std::string> list_text;  ///< canonical texts of the lists of the model, by key
     std::set<std::string> constraint_names, force_names, output_names, event_names;
     bool ground_listed = false;
     int ignored = 0;  // number of constraints with f_dot or f_ddot

@@ -139,12 +139,19 @@ Mat3 read_orientation(ObjectReader& o, const AboutOrientation& about)
     return A;
 }
 
-Json json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+// The elements of a braced list are copied. A model has many of these lists.
+Json json(const Vec3& v)
+{
+    Json::List list(3);
+    for (size_t k = 0; k < 3; ++k) list[k].value = v[static_cast<Eigen::Index>(k)];
+    return list;
+}
 
 Json json(const Mat3& m)
 {
-    const auto row = [&](int i) { return json(Vec3(m.row(i).transpose())); };
-    return {row(0), row(1), row(2)};
+    Json::List rows(3);
+    for (size_t k = 0; k < 3; ++k) rows[k] = json(Vec3(m.row(static_cast<Eigen::Index>(k))));
+    return rows;
 }
 
 }  // namespace hilda::dae

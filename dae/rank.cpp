@@ -13,31 +13,31 @@ namespace hilda::dae {
 
 namespace {
 
-/// The general constraint to which row k of the reduced system belongs. Inactive constraints have no rows
-/// there.
-const Constraint& general_constraint_of_row(const Model& model, const State& x, int k)
+/// The general constraints to which the rows of the reduced system after those of blocks belong. Inactive
+/// constraints have no rows there.
+std::vector<const Constraint*> constraints_of_rows(const Model& model, const State& x)
 {
-    int row = static_cast<int>(model.active_rows().size());
+    std::vector<const Constraint*> of_row;
     for (const bool velocity_level : {false, true})
         for (const auto& c : model.general_constraints()) {
             if (Model::inactive(*c, x)) continue;
             const Constraint::Size size = c->size();
-            row += velocity_level ? size.velocity_rows - 2 * size.bounded_pairs
-                                  : size.position_rows - size.algebraic_variables;
-            if (k < row) return *c;
+            of_row.insert(of_row.end(),
+                          static_cast<size_t>(velocity_level ? size.velocity_rows - 2 * size.bounded_pairs
+                                                             : size.position_rows - size.algebraic_variables),
+                          c.get());
         }
-    throw std::logic_error("no general constraint has this row");
+    return of_row;
 }
 
 /// The rows of the reduced system in the order in which they are kept: of dependent rows the last one is
 /// redundant. The rows of general constraints other than contacts come first, because only those of blocks
 /// are dropped. Those of contacts come last: a contact whose row is redundant changes its mode.
-std::vector<int> order_of_rows(const Model& model, const State& x, int rows)
+std::vector<int> order_of_rows(int blocks, const std::vector<const Constraint*>& general)
 {
-    const int blocks = static_cast<int>(model.active_rows().size());
     std::vector<int> first, last;
-    for (int k = blocks; k < rows; ++k)
-        (general_constraint_of_row(model, x, k).as_contact() == nullptr ? first : last).push_back(k);
+    for (size_t k = 0; k < general.size(); ++k)
+        (general[k]->as_contact() == nullptr ? first : last).push_back(blocks + static_cast<int>(k));
     for (int k = 0; k < blocks; ++k) first.push_back(k);
     first.insert(first.end(), last.begin(), last.end());
     return first;
@@ -66,7 +66,9 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     auto* row = static_cast<SuiteSparse_long*>(triplets->i);
     auto* column = static_cast<SuiteSparse_long*>(triplets->j);
     auto* value = static_cast<double*>(triplets->x);
-    const std::vector<int> order = order_of_rows(model, x, m);
+    const int blocks = static_cast<int>(model.active_rows().size());
+    const std::vector<const Constraint*> general = constraints_of_rows(model, x);
+    const std::vector<int> order = order_of_rows(blocks, general);
     for (int at = 0; at < m; ++at) {
         const int k = order[at];
         double sum = 0;
@@ -115,11 +117,11 @@ std::vector<int> dependent_rows(const Model& model, State& x, double tolerance)
     if (rank < 0 || rank != independent)
         throw lie::SingularMatrix("SuiteSparseQR could not determine the rank of the constraints", 0);
     std::vector<const Constraint*> dependent_contacts;
-    while (!dependent.empty() && dependent.back() >= static_cast<int>(model.active_rows().size())) {
-        dependent_contacts.insert(dependent_contacts.begin(),
-                                  &general_constraint_of_row(model, x, dependent.back()));
+    while (!dependent.empty() && dependent.back() >= blocks) {
+        dependent_contacts.push_back(general[static_cast<size_t>(dependent.back() - blocks)]);
         dependent.pop_back();
     }
+    std::reverse(dependent_contacts.begin(), dependent_contacts.end());
     std::vector<std::string> undetermined;
     bool can_keep = true;  // contacts have no redundant rows
     for (const Constraint* c : dependent_contacts)

@@ -16,6 +16,7 @@
 #include "lie/trajectory.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace hilda::dae {
 
@@ -150,32 +151,33 @@ void solve_with_internal_states(const Model& model, lie::Saddle& K, State& x)
 }
 
 /// Prepares the model at x, removes the rows that are redundant within `tolerance`, and projects the
-/// positions onto the others. Returns the numbers of the removed rows.
-std::vector<int> project_without_redundant(Model& model, State& x, double tolerance)
+/// positions onto the others. Returns the numbers of the removed rows. K: the saddle matrix of the model.
+std::vector<int> project_without_redundant(Model& model, State& x, double tolerance,
+                                           std::optional<lie::Saddle>& K)
 {
+    K.reset();
     model.prepare(x);
     std::vector<int> redundant;
     if (!model.keep_redundant) redundant = dependent_rows(model, x, tolerance);
-    for (const int k : redundant) model.drop(k);
-    if (model.rows() > 0) {
-        lie::Saddle K(model, lie::Metric::mass, start_solver(model));
-        lie::project_positions(model, K, x);
-    }
+    if (!redundant.empty()) model.drop(redundant);
+    K.emplace(model, lie::Metric::mass, start_solver(model));
+    if (model.rows() > 0) lie::project_positions(model, *K, x);
     return redundant;
 }
 
 /// Removes redundant rows and projects the positions x onto the constraints. Returns the numbers of the
-/// removed rows.
+/// removed rows. K: the saddle matrix of the model without them.
 ///
 /// If the positions violate the constraints, a redundant row appears independent by about the size of the
 /// violation. The positions are therefore first projected with a rank tolerance of this size. The tolerance
 /// is reduced until the projected positions satisfy the removed rows as well.
-std::vector<int> drop_redundant_and_project(Model& model, State& x, double residual)
+std::vector<int> drop_redundant_and_project(Model& model, State& x, double residual,
+                                            std::optional<lie::Saddle>& K)
 {
     for (double tolerance = std::min(0.1, 10 * residual); tolerance > rank_tolerance; tolerance /= 10) {
         State candidate = x;
         try {
-            const bool complete = project_without_redundant(model, candidate, tolerance).empty();
+            const bool complete = project_without_redundant(model, candidate, tolerance, K).empty();
             if (!complete && !(model.largest_residual(candidate).value < redundancy_tolerance)) continue;
         } catch (const lie::NumericalFailure&) {
             continue;
@@ -185,12 +187,12 @@ std::vector<int> drop_redundant_and_project(Model& model, State& x, double resid
         x = candidate;
         break;
     }
-    std::vector<int> redundant = project_without_redundant(model, x, rank_tolerance);
+    std::vector<int> redundant = project_without_redundant(model, x, rank_tolerance, K);
     // Repeat at the projected positions. The complement of a driver is exact there, because the hinge is
     // exact.
     const auto has_complement = [](const Model::Row& row) { return row.complement != nullptr; };
     if (std::any_of(model.all_rows().begin(), model.all_rows().end(), has_complement))
-        redundant = project_without_redundant(model, x, rank_tolerance);
+        redundant = project_without_redundant(model, x, rank_tolerance, K);
     return redundant;
 }
 
@@ -304,7 +306,9 @@ StartReport start(Model& model, State& x, const StartOptions& options)
 
     check_general_constraints(model, x, options, position_violation, report.position_residual,
                               report.worst_position, report.position_violation);
-    const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual);
+    std::optional<lie::Saddle> saddle;
+    const std::vector<int> dropped = drop_redundant_and_project(model, x, report.position_residual, saddle);
+    lie::Saddle& K = *saddle;
     for (const int k : dropped) report.dropped.push_back(model.name_of(model.all_rows()[k]));
     report.rank = model.rows() - model.pattern().algebraic_variables();
     if (model.keep_redundant) report.redundant = number_of_redundant(model, x);
@@ -316,7 +320,6 @@ StartReport start(Model& model, State& x, const StartOptions& options)
             report.rank -= 2 * c->bounded_pairs();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
-    lie::Saddle K(model, lie::Metric::mass, start_solver(model));
     if (report.rows > 0) {
         // The velocities as given are checked at the projected positions.
         const Model::Residual velocity = model.largest_velocity_residual(x);

@@ -222,8 +222,15 @@ std::size_t utf8_length(std::string_view s)
 
 std::string pointer_to(const std::string& parent, std::string_view key)
 {
-    std::string pointer = parent + "/";
-    for (const char c : excerpt(key)) pointer += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    std::string pointer;
+    const std::string shown = excerpt(key);
+    pointer.reserve(parent.size() + shown.size() + 1);
+    (pointer += parent) += '/';
+    for (const char c : shown)
+        if (c == '~' || c == '/')
+            pointer += c == '~' ? "~0" : "~1";
+        else
+            pointer += c;
     return pointer;
 }
 

@@ -18,6 +18,8 @@ namespace {
 // 2^53 - 1. The value 2^53 may result from rounding 2^53 + 1.
 constexpr double largest_exact_integer = 9007199254740991;
 
+constexpr std::size_t usual_size = 4;  // of lists and objects
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_word(char c)
 {
@@ -179,6 +181,7 @@ private:
     Json list()
     {
         Json::List all;
+        all.reserve(usual_size);
         open({&all, nullptr});
         if (!take(']')) {
             do {
@@ -195,6 +198,7 @@ private:
     Json object()
     {
         Json::Object all;
+        all.reserve(usual_size);
         open({nullptr, &all});
         if (!take('}')) {
             do {
@@ -217,6 +221,13 @@ private:
 
     void check_duplicates(const Json::Object& object) const
     {
+        constexpr std::size_t few = 16;
+        if (object.size() <= few) {  // most objects: without the memory of a sorted list
+            bool twice = false;
+            for (std::size_t a = 0; a < object.size(); ++a)
+                for (std::size_t b = 0; b < a; ++b) twice = twice || object[a].key == object[b].key;
+            if (!twice) return;
+        }
         std::vector<std::size_t> order(object.size());
         std::iota(order.begin(), order.end(), 0);
         std::stable_sort(order.begin(), order.end(),

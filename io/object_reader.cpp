@@ -33,6 +33,8 @@ ObjectReader::ObjectReader(const JsonSource& source, const Json& value, std::str
     : source(source), value(value), own_pointer(std::move(pointer))
 {
     if (value.members() == nullptr) fail("must be an object, got " + described(value));
+    constexpr std::size_t usual = 8;  // keys of an object
+    known.reserve(2 * usual), recorded.reserve(usual);
     if (source.schema == nullptr) return;
     notes = std::make_shared<ObjectSchema>(*source.schema);
     notes->begin();
@@ -186,11 +188,15 @@ std::vector<double> ObjectReader::numbers(std::string_view key, std::size_t coun
     if (v.list() == nullptr || v.list()->size() != count)
         fail(key, std::string(key) + " must be a list of " + std::to_string(count) + " numbers, got " +
                       described(v));
-    std::vector<double> x;
-    Json::List list;
+    std::vector<double> x(count);
+    Json::List list(count);
     for (std::size_t k = 0; k < count; ++k) {
-        x.push_back(number_at((*v.list())[k], pointer_to(pointer(key), std::to_string(k)), key));
-        list.push_back(x.back());
+        const Json& element = (*v.list())[k];
+        const double* const literal = element.number();
+        x[k] = literal != nullptr && std::abs(*literal) <= largest  // without the text of its pointer
+                   ? *literal
+                   : number_at(element, pointer_to(pointer(key), std::to_string(k)), key);
+        list[k].value = x[k];
     }
     record(key, std::move(list));
     return x;

@@ -252,6 +252,7 @@ std::vector<std::string> wrong_derivatives(const Model& model, const lie::State&
         if (c->algebraic_variables() == 0 && !Model::inactive(*c, x) && out.is_next(typeid(constraint)))
             ConstraintCheck(*c, model.arguments(*c, x), out.lines).run();
     }
+    if (model.forces().empty()) return std::move(out.lines);
     lie::LoadVariation work;
     work.plus = work.minus = lie::Loads(model.bodies());
     const State near = work.x = moved(x);

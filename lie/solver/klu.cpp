@@ -35,6 +35,7 @@ struct Klu::Library {
     klu_symbolic* orderings[2] = {};   ///< AMD, COLAMD
     klu_symbolic* symbolic = nullptr;  ///< that of `numeric`
     klu_numeric* numeric = nullptr;
+    int n = 0, *columns = nullptr, *rows = nullptr;  ///< the pattern
 
     explicit Library(Scaling scaling)
     {
@@ -43,6 +44,13 @@ struct Klu::Library {
         common.scale = scaling == Scaling::none ? -1 : 2;
     }
     ~Library() { clear(); }
+    /// The analysis of the pattern with an ordering; nullptr if the matrix is singular for all values
+    klu_symbolic* analysed(int ordering)
+    {
+        common.ordering = ordering;
+        if (orderings[ordering] == nullptr) orderings[ordering] = klu_analyze(n, columns, rows, &common);
+        return orderings[ordering];
+    }
     void clear()
     {
         klu_free_numeric(&numeric, &common);
@@ -63,21 +71,21 @@ void Klu::analyse(std::vector<int> columns, std::vector<int> rows)
     value.assign(row_index.size(), 0);
     klu->clear();
     have_pivots = false;
-    for (const int ordering : {amd, colamd}) {
-        klu->common.ordering = ordering;
-        klu->orderings[ordering] = klu_analyze(size(), column_start.data(), row_index.data(), &klu->common);
-        if (klu->orderings[ordering] == nullptr)
+    klu->n = size(), klu->columns = column_start.data(), klu->rows = row_index.data();
+    // Large matrices are factored with COLAMD only.
+    for (const int ordering : {colamd, amd})
+        if ((ordering == colamd || size() <= most_compared) && klu->analysed(ordering) == nullptr)
             throw SingularMatrix(
                 "the matrix is singular for all values: there are more constraint rows than degrees of "
                 "freedom, or a row has no body",
                 0);
-    }
 }
 
 double Klu::operations() const
 {
+    const klu_symbolic* const symbolic = klu->analysed(amd);
     // the estimate of AMD; -1 if there is none
-    return std::max(klu->orderings[amd]->est_flops, 0.);
+    return symbolic != nullptr ? std::max(symbolic->est_flops, 0.) : 0;
 }
 
 long Klu::entries_of_factors() const

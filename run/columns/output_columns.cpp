@@ -98,6 +98,8 @@ OutputColumns::OutputColumns(const dae::Model& model,
 OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const dae::Output*>& outputs)
     : ColumnGroup(columns_of(outputs))
 {
+    variable.resize(1), first_output = 1;
+    if (outputs.empty()) return;  // the names of all columns take much longer than the model
     std::vector<std::string> names = {"t"};
     for (auto make : {body_columns, energy_column, force_columns, contact_columns}) {
         sources.push_back({.group = make(model), .first = names.size()});

@@ -127,7 +127,10 @@ bool is_cosim_file(const std::string& path)
 {
     if (!is_model_path(path)) return false;
     try {
-        const io::JsonSource source(io::read_file(path, io::JsonSource::max_bytes), path);
+        std::string text = io::read_file(path, io::JsonSource::max_bytes);
+        const auto has = [&](const char* part) { return text.find(part) != std::string::npos; };
+        if (!has("hilda_cosim") && !has("\\u")) return false;  // a large model is not parsed twice
+        const io::JsonSource source(std::move(text), path);
         return source.root.member("hilda_cosim") != nullptr;
     } catch (const io::Failure&) {
         return false;

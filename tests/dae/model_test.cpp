@@ -121,7 +121,7 @@ TEST_CASE("the name of a row contains its constraint and its bodies", "[dae][mod
     CHECK(model.constraints() == 2);
     CHECK(model.row_name(1) == "constraint 'pin' row 2; bodies 'ground', 'crank'");
     CHECK(model.row_name(7) == "constraint 'ball' row 3; bodies 'crank', 'rod'");
-    model.drop(5);
+    model.drop({5});
     CHECK(model.rows() == 7);
     CHECK(model.dropped_rows() == std::vector<int>{5});
     CHECK(model.row_name(5) == "constraint 'ball' row 2; bodies 'crank', 'rod'");
@@ -171,7 +171,7 @@ TEST_CASE("phi, nu, gamma and the variation omit removed rows and the ground", "
     model.constrain("one", DP1(0, c, 1, s, f));
     model.constrain("two", CD(X, ground, s, 1, q));
     model.constrain("three", CD(c, 1, s, 0, q, f));
-    model.drop(0);
+    model.drop({0});
     const State x = random.state(2);
 
     Eigen::VectorXd phi(2), nu(2), gamma(2);

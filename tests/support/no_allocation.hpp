@@ -17,7 +17,7 @@ inline constexpr bool counts_allocations = false;  ///< a sanitizer replaces mal
 inline constexpr bool counts_allocations = true;
 #endif
 
-inline std::atomic<long> allocations{0};
+inline std::atomic<long> allocations{0}, allocated_bytes{0};
 
 /// Number of allocations during f()
 template <class F>
@@ -38,16 +38,19 @@ extern "C" void* __libc_calloc(std::size_t, std::size_t);
 extern "C" __attribute__((weak)) void* malloc(std::size_t size)
 {
     ++hilda::tests::allocations;
+    hilda::tests::allocated_bytes += static_cast<long>(size);
     return __libc_malloc(size);
 }
 extern "C" __attribute__((weak)) void* realloc(void* p, std::size_t size)
 {
     ++hilda::tests::allocations;
+    hilda::tests::allocated_bytes += static_cast<long>(size);
     return __libc_realloc(p, size);
 }
 extern "C" __attribute__((weak)) void* calloc(std::size_t n, std::size_t size)
 {
     ++hilda::tests::allocations;
+    hilda::tests::allocated_bytes += static_cast<long>(n * size);
     return __libc_calloc(n, size);
 }
 #endif

@@ -78,10 +78,8 @@ TEST_CASE("rows of a point that are evaluated together are those of their blocks
     State x = random.state(4);
     check_rows(model, x);
 
-    model.drop(1);  // the second row of a group
-    model.drop(4);  // two rows of the next one
-    model.drop(5);
-    model.drop(9);
+    model.drop({1, 9});  // 1: the second row of a group
+    model.drop({4, 5});  // two rows of the next one
     x.discrete_state.assign(10, 0);
     check_rows(model, x);
 }

@@ -10,6 +10,7 @@
 
 #include "granular/backend/real.hpp"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace hilda::granular {
@@ -117,6 +118,32 @@ private:
     double part = 0;
 };
 
+/// The same for terms that are doubles: two doubles hold their sum exactly, unless they differ by a factor of
+/// about 2^54.
+class DoublePart {
+public:
+    HILDA_HD void add(double x, FixedSum& sum)
+    {
+        const double s = high + x, of_x = s - high;
+        const double e = (high - (s - of_x)) + (x - of_x);  // exact: Knuth's two-sum
+        const double t = low + e, of_e = t - low;
+        const double rounding = (low - (t - of_e)) + (e - of_e);
+        if (rounding == 0 && abs(s) < 0x1p114 && (abs(x) > 0x1p-87 || x == 0)) {
+            high = s, low = t;
+            return;
+        }
+        sum += x;
+    }
+    /// Adds the part to the sum.
+    HILDA_HD void finish(FixedSum& sum) { sum += high, sum += low, high = low = 0; }
+
+private:
+    double high = 0, low = 0;
+};
+
+/// Adds n terms to a sum. The sum is the same bit by bit as that of the terms one by one.
+void add_all(FixedSum& sum, const double* x, std::size_t n);
+
 /// The same for the components of vectors
 struct FixedVec {
     FixedSum x, y, z;
@@ -143,6 +170,17 @@ public:
 
 private:
     FloatPart x, y, z;
+};
+class DoublePartVec {
+public:
+    HILDA_HD void add(const Vec<double>& v, FixedVec& sum)
+    {
+        x.add(v.x, sum.x), y.add(v.y, sum.y), z.add(v.z, sum.z);
+    }
+    HILDA_HD void finish(FixedVec& sum) { x.finish(sum.x), y.finish(sum.y), z.finish(sum.z); }
+
+private:
+    DoublePart x, y, z;
 };
 
 }  // namespace hilda::granular

@@ -6,13 +6,14 @@
 ///     build/native/hilda_granular_benchmark 50000         with 1, 2, 4 … threads
 ///     build/native/hilda_granular_benchmark 1000000 cuda  on a GPU
 ///     build/native/hilda_granular_benchmark watch 10000   cost of the watch: CPU time of steps with and without it
-///     build/native/hilda_granular_benchmark rows 50000    cost of a row of run.csv, in CPU times of a step
+///     build/native/hilda_granular_benchmark rows 50000    cost of a row of run.csv and of a frame, in CPU times of a step
 ///     build/native/hilda_granular_benchmark mesh 10000    cost of triangles, in CPU times of a step with planes
 ///
 /// For the bed at rest the program then prints the memory throughput of each part of a step: the bytes that
 /// it has to transfer at least, divided by its time, also as a fraction of the throughput of a copy.
 
 #include "granular/mesh/mesh_shapes.hpp"
+#include "granular/world/output.hpp"
 #include "granular/world/world.hpp"
 
 #include <algorithm>
@@ -173,13 +174,14 @@ void report_watch(const char* phase, World& world, long first)
 }
 
 /// Prints the CPU times of a step and of the parts of a row of run.csv: the totals, the kinetic energy, and
-/// the sample of the watch. Medians of rounds in which all of them alternate.
+/// the sample of the watch; and of a frame without its disk. Medians of rounds in which all of them
+/// alternate.
 void report_row(const char* phase, World& world, long first)
 {
     world.set_watch(true);
     world.step(first);
     world.step(2 * watch_limit::interval - world.steps() % watch_limit::interval);
-    enum Part { step, totals, kinetic, sampled, parts };
+    enum Part { step, totals, kinetic, sampled, frame, parts };
     std::vector<double> times[parts];
     constexpr long many = 8;
     for (int round = 0; round < 41; ++round) {
@@ -196,14 +198,16 @@ void report_row(const char* phase, World& world, long first)
         measure(kinetic, [&] { world.kinetic_energy(); });
         world.set_watch(true, world.steps() + 1);  // a sample in the next step
         measure(sampled, [&] { world.step(1); });
+        std::size_t bytes = 0;
+        measure(frame, [&] { particles_vtp(world, [&](std::string_view piece) { bytes += piece.size(); }); });
     }
     for (std::vector<double>& t : times)
         std::nth_element(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(t.size() / 2), t.end());
     const auto median = [&](Part part) { return times[part][times[part].size() / 2]; };
     const double one = median(step), sample = median(sampled) - one;
-    std::printf("%9zu %-8s %9.0f %9.2f %9.2f %9.2f %9.2f\n", world.count(), phase, 1e6 * one,
+    std::printf("%9zu %-8s %9.0f %9.2f %9.2f %9.2f %9.2f %9.2f\n", world.count(), phase, 1e6 * one,
                 median(totals) / one, median(kinetic) / one, sample / one,
-                (median(totals) + median(kinetic) + sample) / one);
+                (median(totals) + median(kinetic) + sample) / one, median(frame) / one);
     std::fflush(stdout);
 }
 
@@ -271,8 +275,8 @@ void rows_benchmark(std::size_t n)
 {
     World world = bed(n, {});
     std::printf(
-        "                       step  parts of a row, in steps\n"
-        "particles phase        [us]    totals    energy    sample       all\n");
+        "                       step  parts of a row, in steps                   a frame,\n"
+        "particles phase        [us]    totals    energy    sample       all  in steps\n");
     report_row("falling", world, 20);
     report_row("at rest", world, std::lround(0.1 / h));
 }

@@ -39,6 +39,7 @@ struct AddContacts {
     HILDA_HD void operator()(std::uint32_t block) const
     {
         ContactPart sum;
+        DoublePart normal, tangential;
         const std::uint32_t end = end_of_block(block, pairs.count);
         for (std::uint32_t n = block * watch_block; n < end; ++n) {
             ContactPoint<float> contact{};
@@ -54,10 +55,11 @@ struct AddContacts {
             if (pairs.internal != nullptr) set_internal(history, pairs.internal[n]);
             const ElasticEnergy<float> U = elastic_energy(laws.law[pairs.law == nullptr ? 0 : pairs.law[n]],
                                                           contact, history, rotation_laws);
-            sum.normal += U.normal, sum.tangential += U.tangential;
+            normal.add(U.normal, sum.normal), tangential.add(U.tangential, sum.tangential);
             const float R = contact.R_j > 0 ? smaller(contact.R_i, contact.R_j) : contact.R_i;
             sum.contacts += 1, sum.deep += contact.delta > deep_overlap * R ? 1 : 0;
         }
+        normal.finish(sum.normal), tangential.finish(sum.tangential);
         out[block] = sum;
     }
 };

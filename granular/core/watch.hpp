@@ -131,6 +131,8 @@ struct AddParticles {
     HILDA_HD void operator()(std::uint32_t block) const
     {
         ParticlePart sum;
+        DoublePart mass, momentum_size;
+        DoublePartVec momentum, moment;
         const std::uint32_t end = end_of_block(block, count);
         for (std::uint32_t k = block * watch_block; k < end; ++k) {
             const Float4 v = particles.velocity[k], w = particles.omega[k];
@@ -148,9 +150,12 @@ struct AddParticles {
                 if (clumps.represents(k, c)) add_clump(sum, clumps.body[c], copy[k]);
                 continue;
             }
-            sum.mass += m, sum.momentum += m * v_k, sum.momentum_size += m * speed;
-            sum.moment += m * global_position(particles.grid, particles.position[k]);
+            mass.add(m, sum.mass), momentum.add(m * v_k, sum.momentum);
+            momentum_size.add(m * speed, sum.momentum_size);
+            moment.add(m * global_position(particles.grid, particles.position[k]), sum.moment);
         }
+        mass.finish(sum.mass), momentum.finish(sum.momentum), momentum_size.finish(sum.momentum_size);
+        moment.finish(sum.moment);
         out[block] = sum;
     }
     HILDA_HD void add_clump(ParticlePart& sum, const ClumpBody& b, Velocities& own) const
@@ -182,6 +187,7 @@ struct AddKinetic {
     HILDA_HD void operator()(std::uint32_t block) const
     {
         KineticPart sum;
+        DoublePart translation, rotation;
         const std::uint32_t end = end_of_block(block, count);
         const auto product = [&](const Vec<float>& first, const Float4& after) {
             const Vec3 a{first.x, first.y, first.z}, b{after.x, after.y, after.z};
@@ -203,9 +209,10 @@ struct AddKinetic {
                     0.2 * m * R * R * to_double(b.omega_before).dot(w_before + s * (w_after - w_before));
                 continue;
             }
-            sum.translation += 0.5 * m * product(before[k].v, v);
-            sum.rotation += 0.2 * m * R * R * product(before[k].omega, w);
+            translation.add(0.5 * m * product(before[k].v, v), sum.translation);
+            rotation.add(0.2 * m * R * R * product(before[k].omega, w), sum.rotation);
         }
+        translation.finish(sum.translation), rotation.finish(sum.rotation);
         out[block] = sum;
     }
 };

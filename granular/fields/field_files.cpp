@@ -63,11 +63,10 @@ void fields_vti(const FieldGrid& grid, const FieldSums& sums, const io::Append& 
     each_field({}, [&](const std::string& name, const auto& zeros) {
         const auto components = zeros.size();
         file.array<double>(name, static_cast<int>(components), grid.count() * components,
-                           [&, name](const std::function<void(double)>& put) {
+                           [&, name](const std::function<void(std::span<const double>)>& put) {
                                for (std::size_t n = 0; n < grid.count(); ++n)
                                    each_field(sums.values(n), [&](std::string_view of, const auto& numbers) {
-                                       for (std::size_t k = 0; of == name && k < numbers.size(); ++k)
-                                           put(numbers[k]);
+                                       if (of == name) put(numbers);
                                    });
                            });
     });

@@ -94,27 +94,48 @@ void particles_vtp(const World& world, const io::Append& append_piece, const Gro
     io::VtkPolyData file({{"NumberOfPoints", world.count()}});
     const auto array = [&]<class Number>(const char* name, int components, Number, const auto& value) {
         file.array<Number>(name, components, world.count() * static_cast<std::size_t>(components),
-                           [&world, value](const std::function<void(Number)>& put) {
+                           [&world, value](const std::function<void(std::span<const Number>)>& put) {
+                               constexpr std::size_t full = 8192;
+                               std::vector<Number> some;
                                world.each_particle([&](const Particle& p) {
-                                   for (const auto x : value(p)) put(static_cast<Number>(x));
+                                   for (const auto x : value(p)) some.push_back(static_cast<Number>(x));
+                                   if (some.size() < full) return;
+                                   put(some);
+                                   some.clear();
                                });
+                               put(some);
                            });
     };
     const auto three = [](const Vec3& v) { return std::array{v.x, v.y, v.z}; };
+    // The small arrays are collected at once. The others take more memory: the particles are computed for
+    // each of them.
+    std::vector<float> radius;
+    std::vector<std::int32_t> material, id, group, clump;
+    const bool clumps = !world.clump_templates().empty();
+    const auto collected = [&]<class Number>(const char* name, std::vector<Number>& values) {
+        file.array<Number>(
+            name, 1, world.count(),
+            [&values](const std::function<void(std::span<const Number>)>& put) { put(values); });
+        values.reserve(world.count());
+    };
     file.section("PointData");
-    array("radius", 1, float{}, [](const Particle& p) { return std::array{p.radius}; });
+    collected("radius", radius);
     array("velocity", 3, double{}, [&](const Particle& p) { return three(p.v); });
     array("angular velocity", 3, double{}, [&](const Particle& p) { return three(p.omega); });
     // Order e0, e1, e2, e3, as vtkGlyph3DMapper (representation 3D Glyphs) expects quaternions
     if (world.has_orientation()) array("orientation", 4, double{}, [](const Particle& p) { return p.e; });
-    array("material", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.material}; });
-    array("id", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.id}; });
-    if (groups != nullptr)
-        array("group", 1, std::int32_t{}, [&](const Particle& p) { return std::array{groups->of(p.id)}; });
-    if (!world.clump_templates().empty())
-        array("clump", 1, std::int32_t{}, [](const Particle& p) { return std::array{p.clump}; });
+    collected("material", material), collected("id", id);
+    if (groups != nullptr) collected("group", group);
+    if (clumps) collected("clump", clump);
     file.section("Points");
     array("Points", 3, double{}, [&](const Particle& p) { return three(p.r); });
+    world.each_particle([&](const Particle& p) {
+        radius.push_back(static_cast<float>(p.radius));
+        material.push_back(static_cast<std::int32_t>(p.material)),
+            id.push_back(static_cast<std::int32_t>(p.id));
+        if (groups != nullptr) group.push_back(static_cast<std::int32_t>(groups->of(p.id)));
+        if (clumps) clump.push_back(static_cast<std::int32_t>(p.clump));
+    });
     file.write(append_piece);
 }
 

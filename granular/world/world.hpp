@@ -483,8 +483,8 @@ private:
     void set_attached();
     void move_attached();
     bool is_posed() const;
-    template <class OnBoundary>
-    void add_wrench(std::vector<OnBoundary>& to, const ContactRecord& c) const;
+    template <class To>
+    void add_wrench(To& to, const ContactRecord& c) const;
     [[noreturn]] void throw_left(std::uint32_t id) const;
     void one_step();
     double move_boundaries();

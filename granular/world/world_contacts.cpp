@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Queries of contacts at t. Loads are computed again from copies of the histories, so that a query does not
 // change the state.
+#include "granular/backend/cpu_loops.hpp"
 #include "granular/backend/fixed_sum.hpp"
+#include "granular/backend/instruction_set.hpp"
 #include "granular/core/surfaces/hand_over.hpp"
 #include "granular/world/world_impl.hpp"
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -15,9 +18,9 @@ namespace hilda::granular {
 using namespace detail;
 
 /// Adds the force and the torque of a contact on its boundary, and on the boundaries to which its particles
-/// are attached, and on the bodies of which these are parts, about Boundary::r.
-template <class OnBoundary>
-void World::add_wrench(std::vector<OnBoundary>& to, const ContactRecord& c) const
+/// are attached, and on the bodies of which these are parts, about Boundary::r. to[b]: the sum of boundary b.
+template <class To>
+void World::add_wrench(To& to, const ContactRecord& c) const
 {
     const auto add = [&](int number, double sign) {
         if (number < 0) return;
@@ -39,9 +42,13 @@ struct World::CurrentLoads {
 
     const Arrays<par::Cpu>& of;
     std::uint32_t begin, count;  ///< number of the first pair, number of pairs
-    Float4 history[most] = {}, rotation_history[most] = {}, torque[most] = {}, internal[most] = {};
-    Load load[most] = {};
-    std::uint8_t in_contact[most] = {};
+    Float4 history[most], rotation_history[most], torque[most], internal[most];  ///< set if they are used
+    Load load[most];
+    std::uint8_t in_contact[most];
+
+    CurrentLoads(const Arrays<par::Cpu>& of, std::uint32_t begin, std::uint32_t count)
+        : of(of), begin(begin), count(count)
+    {}
 
     bool touching(std::uint32_t n) const { return in_contact[n - begin] != 0; }
     static std::uint32_t parts(std::uint32_t pairs) { return (pairs + most - 1) / most; }
@@ -108,29 +115,32 @@ void World::for_current_loads(const Arrays<par::Cpu>& of, const F& f) const
                            static_cast<float>(lag)};
     const ParticleView particles = particle_view(domain, of.particle);
     constexpr std::uint32_t most = CurrentLoads::most;
+    const CpuLoops& loops = cpu_loops();
     const HandedOver from(pairs, particles, law_view.surfaces, rotation_laws, internal);
     par::for_each(
         par::Cpu(), CurrentLoads::parts(pairs.count),
         [&](std::uint32_t part) {
             const std::uint32_t begin = part * most, count = std::min(most, pairs.count - begin);
-            const auto now =
-                std::unique_ptr<CurrentLoads>(new CurrentLoads{.of = of, .begin = begin, .count = count});
+            const auto now = std::make_unique<CurrentLoads>(of, begin, count);
             std::copy_n(from.history + begin, count, now->history);
             std::copy_n(from.in_contact + begin, count, now->in_contact);
             if (rotation_laws) std::copy_n(from.rotation_history + begin, count, now->rotation_history);
+            std::fill_n(now->torque, count, Float4{});
             if (internal) std::copy_n(from.internal + begin, count, now->internal);
-            find_loads(par::Cpu(), particles,
-                       {.i = pairs.i.data() + begin,
-                        .j = pairs.j.data() + begin,
-                        .law = laws.size() > 1 ? pairs.law.data() + begin : nullptr,
-                        .history = now->history,
-                        .rotation_history = rotation_laws ? now->rotation_history : nullptr,
-                        .load = now->load,
-                        .torque = rotation_laws ? now->torque : nullptr,
-                        .in_contact = now->in_contact,
-                        .count = count,
-                        .internal = internal ? now->internal : nullptr},
-                       law_view);
+            std::uint32_t number[most];
+            std::iota(number, number + count, 0u);
+            loops.find_listed_loads(par::Cpu(), particles,
+                                    {.i = pairs.i.data() + begin,
+                                     .j = pairs.j.data() + begin,
+                                     .law = laws.size() > 1 ? pairs.law.data() + begin : nullptr,
+                                     .history = now->history,
+                                     .rotation_history = rotation_laws ? now->rotation_history : nullptr,
+                                     .load = now->load,
+                                     .torque = rotation_laws ? now->torque : nullptr,
+                                     .in_contact = now->in_contact,
+                                     .count = count,
+                                     .internal = internal ? now->internal : nullptr},
+                                    law_view, number, count);
             f(part, *now);
         },
         1);
@@ -222,20 +232,17 @@ Wrench World::wrench(const std::vector<ContactRecord>& contacts, int b, int repl
 struct World::ExactTotals {
     struct ExactWrench {
         FixedVec F, T;
+        ExactWrench& operator+=(const ExactWrench& o)
+        {
+            F += o.F, T += o.T;
+            return *this;
+        }
         Wrench value() const { return {F.value(), T.value()}; }
     };
 
     std::size_t contacts = 0;
     std::array<FixedSum, 9> stress = {};
     std::vector<ExactWrench> on_boundary;
-
-    void add_stress(const Vec3& l, const Float4& F)
-    {
-        const double from_j[] = {l.x, l.y, l.z}, on_i[] = {F.x, F.y, F.z};
-        for (std::size_t a = 0; a < 3; ++a)
-            for (std::size_t b = 0; b < 3; ++b) stress[3 * a + b] += from_j[a] * on_i[b];
-        ++contacts;
-    }
     void put(Totals& to, double volume) const
     {
         to.contacts = contacts;
@@ -253,8 +260,37 @@ void World::add_totals(const To& to) const
     // Pairs are ordered by replica; a part has one sum for each replica in it.
     struct Sum {
         ExactTotals* to = nullptr;
-        ExactTotals parts;
-        std::vector<ContactRecord> with_boundaries;  ///< those that load a boundary
+        std::size_t contacts = 0;
+        std::array<FixedSum, 9> stress = {};
+        std::vector<std::pair<std::size_t, ExactTotals::ExactWrench>> on;  ///< by the number of a boundary
+
+        ExactTotals::ExactWrench& operator[](std::size_t boundary)
+        {
+            for (auto& [number, sum] : on)
+                if (number == boundary) return sum;
+            return on.emplace_back(boundary, ExactTotals::ExactWrench()).second;
+        }
+    };
+    /// Branch vectors and forces of contacts, by components
+    struct Terms {
+        double l[3][CurrentLoads::most], F[3][CurrentLoads::most], product[CurrentLoads::most];
+        std::size_t count = 0;
+
+        void add(const Vec3& branch, const Float4& force)
+        {
+            l[0][count] = branch.x, l[1][count] = branch.y, l[2][count] = branch.z;
+            F[0][count] = force.x, F[1][count] = force.y, F[2][count] = force.z;
+            ++count;
+        }
+        void finish(Sum& sum)
+        {
+            for (std::size_t a = 0; a < 3; ++a)
+                for (std::size_t b = 0; b < 3; ++b) {
+                    for (std::size_t k = 0; k < count; ++k) product[k] = l[a][k] * F[b][k];
+                    add_all(sum.stress[3 * a + b], product, count);
+                }
+            sum.contacts += count, count = 0;
+        }
     };
     engine->each_piece(true, [&](const Piece& piece) {
         const Arrays<par::Cpu>& of = piece.arrays;
@@ -264,33 +300,37 @@ void World::add_totals(const To& to) const
         std::vector<std::vector<Sum>> sums(CurrentLoads::parts(of.pairs.count));
         for_current_loads(of, [&](std::uint32_t part, const CurrentLoads& now) {
             std::vector<Sum> of_part;
+            Terms terms;
             for (std::uint32_t n = now.begin; n < now.begin + now.count; ++n) {
                 if (!now.touching(n)) continue;
                 const std::uint32_t i = of.pairs.i.data()[n], j = of.pairs.j.data()[n];
                 const Float4 F = now.load[n - now.begin].F;
                 ExactTotals* const replica = to(of.particle.species.data()[i].replica);
-                if (of_part.empty() || of_part.back().to != replica) of_part.emplace_back().to = replica;
+                if (of_part.empty() || of_part.back().to != replica) {
+                    if (!of_part.empty()) terms.finish(of_part.back());
+                    of_part.emplace_back().to = replica;
+                }
                 Sum& sum = of_part.back();
                 if ((j & PairView::boundary_bit) == 0) {
-                    sum.parts.add_stress(separation(domain.grid, position[i], position[j]) -
-                                             (offset_in_clump(id[i]) - offset_in_clump(id[j])),
-                                         F);
+                    terms.add(separation(domain.grid, position[i], position[j]) -
+                                  (offset_in_clump(id[i]) - offset_in_clump(id[j])),
+                              F);
                     const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
-                    if (!attached.empty() && fixed) sum.with_boundaries.push_back(contact(now, n));
+                    if (!attached.empty() && fixed) add_wrench(sum, contact(now, n));
                 } else {
                     const ContactRecord c = contact(now, n);
-                    sum.parts.add_stress(
-                        (of.particle.velocity.data()[i].w - c.delta) * c.n - offset_in_clump(id[i]), F);
-                    sum.with_boundaries.push_back(c);
+                    terms.add((of.particle.velocity.data()[i].w - c.delta) * c.n - offset_in_clump(id[i]), F);
+                    add_wrench(sum, c);
                 }
             }
+            if (!of_part.empty()) terms.finish(of_part.back());
             sums[part] = std::move(of_part);
         });
         for (const std::vector<Sum>& of_part : sums)
             for (const Sum& sum : of_part) {
-                sum.to->contacts += sum.parts.contacts;
-                for (std::size_t k = 0; k < 9; ++k) sum.to->stress[k] += sum.parts.stress[k];
-                for (const ContactRecord& c : sum.with_boundaries) add_wrench(sum.to->on_boundary, c);
+                sum.to->contacts += sum.contacts;
+                for (std::size_t k = 0; k < 9; ++k) sum.to->stress[k] += sum.stress[k];
+                for (const auto& [boundary, wrench] : sum.on) sum.to->on_boundary[boundary] += wrench;
             }
     });
 }

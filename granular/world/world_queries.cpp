@@ -106,6 +106,11 @@ struct AnySum {
         exact += x, near += x;
         return *this;
     }
+    void add(const double* x, std::size_t n)
+    {
+        add_all(exact, x, n);
+        near = std::accumulate(x, x + n, near);
+    }
     AnySum& operator+=(const AnySum& o)
     {
         exact += o.exact, near += o.near;
@@ -138,6 +143,28 @@ struct PartialSums {
     }
 };
 
+/// The terms of up to `most` particles, by components
+template <std::size_t most>
+struct SumTerms {
+    double kinetic_energy[most], rotational_energy[most], potential_energy[most], momentum[3][most];
+    std::size_t count = 0;
+
+    void add(const World::Sums& p)
+    {
+        kinetic_energy[count] = p.kinetic_energy, rotational_energy[count] = p.rotational_energy;
+        potential_energy[count] = p.potential_energy;
+        momentum[0][count] = p.momentum.x, momentum[1][count] = p.momentum.y,
+        momentum[2][count] = p.momentum.z;
+        ++count;
+    }
+    void finish(PartialSums& to) const
+    {
+        to.kinetic_energy.add(kinetic_energy, count), to.rotational_energy.add(rotational_energy, count);
+        to.potential_energy.add(potential_energy, count);
+        for (int k = 0; k < 3; ++k) to.momentum[k].add(momentum[k], count);
+    }
+};
+
 }  // namespace
 
 World::Sums World::sums() const
@@ -146,35 +173,37 @@ World::Sums World::sums() const
                           options.periodic[1] ? 0 : options.gravity.y,
                           options.periodic[2] ? 0 : options.gravity.z};
     PartialSums all;
-    const auto add = [&](PartialSums& to, const Particle& p, const Vec3& w) {
+    const auto sums_of = [&](const Particle& p, const Vec3& w) {
         Sums one;
         one.add(p, w, gravity);
-        to += one;
+        return one;
     };
     engine->each_piece(false, [&](const Piece& piece) {
         const Particles<par::Cpu>& in = piece.arrays.particle;
         const std::uint32_t count = piece.particles;
-        constexpr std::uint32_t block = 256;
+        constexpr std::uint32_t block = 1024;
         std::vector<PartialSums> of_block((count + block - 1) / block);
         par::for_each(
             par::Cpu(), of_block.size(),
             [&](std::uint32_t number) {
+                SumTerms<block> terms;
                 for (std::uint32_t k = number * block; k < std::min((number + 1) * block, count); ++k)
                     if (const std::uint32_t id = in.id.data()[k], c = clump_of(id); c == no_clump) {
                         const Particle p = particle_at(in, k);
-                        add(of_block[number], p, p.omega);
+                        terms.add(sums_of(p, p.omega));
                     } else if (const ClumpState s = clump_state(c); s.body.id == id) {
-                        add(of_block[number], s.body, s.w);
+                        terms.add(sums_of(s.body, s.w));
                     }
+                terms.finish(of_block[number]);
             },
-            8);
+            2);
         for (const PartialSums& part : of_block) all += part;
     });
     for (const Particle& p : pending)
-        if (p.clump < 0) add(all, p, p.omega);
+        if (p.clump < 0) all += sums_of(p, p.omega);
     for (const Clump& c : pending_clumps) {
         const ClumpState s = clump_state(c);
-        add(all, s.body, s.w);
+        all += sums_of(s.body, s.w);
     }
     return {.kinetic_energy = all.kinetic_energy.value(),
             .rotational_energy = all.rotational_energy.value(),

@@ -93,9 +93,8 @@ void VtkFile::end_section()
 template <class Number>
 void VtkFile::array(const std::string& name, int components, const std::vector<Number>& values)
 {
-    array<Number>(name, components, values.size(), [values](const std::function<void(Number)>& put) {
-        for (const Number x : values) put(x);
-    });
+    array<Number>(name, components, values.size(),
+                  [values](const std::function<void(std::span<const Number>)>& put) { put(values); });
 }
 template void VtkFile::array(const std::string&, int, const std::vector<float>&);
 template void VtkFile::array(const std::string&, int, const std::vector<double>&);
@@ -103,7 +102,7 @@ template void VtkFile::array(const std::string&, int, const std::vector<std::int
 
 template <class Number>
 void VtkFile::array(const std::string& name, int components, std::size_t count,
-                    std::function<void(const std::function<void(Number)>&)> numbers)
+                    std::function<void(const std::function<void(std::span<const Number>)>&)> numbers)
 {
     const std::string type = std::is_integral_v<Number>      ? "Int32"
                              : std::is_same_v<Number, float> ? "Float32"
@@ -115,8 +114,8 @@ void VtkFile::array(const std::string& name, int components, std::size_t count,
     blocks.emplace_back([bytes, numbers = std::move(numbers)](const Append& append) {
         constexpr std::size_t full = 1 << 20;
         std::string piece(reinterpret_cast<const char*>(&bytes), sizeof bytes);
-        numbers([&](Number x) {
-            piece.append(reinterpret_cast<const char*>(&x), sizeof x);
+        numbers([&](std::span<const Number> some) {
+            piece.append(reinterpret_cast<const char*>(some.data()), some.size_bytes());
             if (piece.size() < full) return;
             append(piece);
             piece.clear();
@@ -125,11 +124,11 @@ void VtkFile::array(const std::string& name, int components, std::size_t count,
     });
 }
 template void VtkFile::array(const std::string&, int, std::size_t,
-                             std::function<void(const std::function<void(float)>&)>);
+                             std::function<void(const std::function<void(std::span<const float>)>&)>);
 template void VtkFile::array(const std::string&, int, std::size_t,
-                             std::function<void(const std::function<void(double)>&)>);
+                             std::function<void(const std::function<void(std::span<const double>)>&)>);
 template void VtkFile::array(const std::string&, int, std::size_t,
-                             std::function<void(const std::function<void(std::int32_t)>&)>);
+                             std::function<void(const std::function<void(std::span<const std::int32_t>)>&)>);
 
 void VtkFile::write(const Append& append)
 {

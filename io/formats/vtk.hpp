@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,11 +24,11 @@ public:
     /// Number: float, double or std::int32_t
     template <class Number>
     void array(const std::string& name, int components, const std::vector<Number>& values);
-    /// The same for numbers that are not in a list: write() calls numbers(put), which passes each of the
-    /// `count` numbers to put.
+    /// The same for numbers that are not in a list: write() calls numbers(put), which passes the `count`
+    /// numbers to put in pieces.
     template <class Number>
     void array(const std::string& name, int components, std::size_t count,
-               std::function<void(const std::function<void(Number)>& put)> numbers);
+               std::function<void(const std::function<void(std::span<const Number>)>& put)> numbers);
     /// Ends the file and passes it on in pieces.
     void write(const Append& append);
     /// Ends the file and returns it.

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+using hilda::granular::add_all;
+using hilda::granular::DoublePart;
 using hilda::granular::FixedSum;
 using hilda::granular::FloatPart;
 
@@ -125,4 +127,42 @@ TEST_CASE("a part with terms of float gives the same fixed sum bit by bit", "[gr
     for (int k = 0; k < 4; ++k) part.add(0x1.8p-141f, sum);
     part.finish(sum);
     CHECK(sum.value() == 0);
+}
+
+TEST_CASE("sums of many doubles are the same as those of the terms one by one", "[granular][fixed-sum]")
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> mantissa(-1, 1);
+    // of one size; of sizes that are split off in three steps, and that are not; beyond the exact range
+    for (const int range : {2, 30, 80, 130}) {
+        std::uniform_int_distribution<int> exponent(-range, std::min(range, 90));
+        for (const std::size_t n : {0, 1, 7, 8, 100, 1024, 1025, 5000}) {
+            std::vector<double> terms(n);
+            for (double& x : terms)
+                x = exponent(random) % 5 == 0 ? 0 : std::ldexp(mantissa(random), exponent(random));
+            FixedSum one_by_one, at_once, in_parts;
+            DoublePart part;
+            for (const double x : terms) one_by_one += x, part.add(x, in_parts);
+            part.finish(in_parts);
+            add_all(at_once, terms.data(), n);
+            CAPTURE(range, n);
+            CHECK(at_once.value() == one_by_one.value());
+            CHECK(in_parts.value() == one_by_one.value());
+            const double rounded = one_by_one.value();
+            for (FixedSum* sum : {&one_by_one, &at_once, &in_parts}) *sum += -rounded;
+            CHECK(at_once.value() == one_by_one.value());  // also below the rounding
+            CHECK(in_parts.value() == one_by_one.value());
+        }
+    }
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double x : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, 1e300}) {
+        FixedSum sum, in_parts;
+        const double terms[] = {1, x, 1};
+        add_all(sum, terms, 3);
+        DoublePart part;
+        for (const double term : terms) part.add(term, in_parts);
+        part.finish(in_parts);
+        CHECK(std::isnan(sum.value()));
+        CHECK(std::isnan(in_parts.value()));
+    }
 }

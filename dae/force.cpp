@@ -16,4 +16,10 @@ double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const
                                   : scheme.stability / 2 * stable_step(x, scheme.loads);
 }
 
+double Force::stable_step_in(const lie::Scheme& scheme, const State& x, std::span<const int> near) const
+{
+    return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity()
+                                  : scheme.stability / 2 * stable_step_with(x, scheme.loads, near);
+}
+
 }  // namespace hilda::dae

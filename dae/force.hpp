@@ -11,6 +11,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -134,8 +135,28 @@ public:
                : evaluation == LoadEvaluation::extrapolated ? spring_limits.extrapolated
                                                             : std::numeric_limits<double>::infinity();
     }
+    /// The contacts that a stability limit counts: those whose surfaces touch or nearly touch in the state,
+    /// or those that are in contact according to the internal state
+    enum class Counted { near, touching };
+    /// Whether the force is such a contact. The limits of contacts divide the mass of a body equally among
+    /// its contacts.
+    virtual bool is_counted(const State& /*x*/, Counted) const { return false; }
+    /// stable_step() with the numbers of near contacts of each body, see Model::count_contacts(). The caller
+    /// counts once for many forces.
+    virtual double stable_step_with(const State& x, LoadEvaluation evaluation,
+                                    std::span<const int> /*near*/) const
+    {
+        return stable_step(x, evaluation);
+    }
+    /// is_stable() with the numbers of touching contacts of each body
+    virtual bool is_stable_with(const State& x, double h, LoadEvaluation evaluation,
+                                std::span<const int> /*touching*/) const
+    {
+        return is_stable(x, h, evaluation);
+    }
     /// stable_step() for the loads of a scheme. Infinite if it evaluates this force implicitly.
     double stable_step_in(const lie::Scheme& scheme, const State& x) const;
+    double stable_step_in(const lie::Scheme& scheme, const State& x, std::span<const int> near) const;
     bool is_implicit_in(const lie::Scheme& scheme) const;
     /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for
     /// each accepted step; the function must not allocate memory.

@@ -37,6 +37,7 @@ int Model::add(Body b)
     const auto number = static_cast<int>(body.size());
     number_of_body.emplace(b.name, number);
     inertia.m.push_back(b.m);
+    total_mass += b.m;
     inertia.J_bar.push_back(b.J_bar);
     body.push_back(std::move(b));
     return number;
@@ -227,22 +228,39 @@ Model::MotionEnd Model::motion_end() const
     return end;
 }
 
-Model::StableStep Model::stable_step(const State& x, LoadEvaluation evaluation) const
+void Model::count_contacts(const State& x, Force::Counted which, std::vector<int>& of_body) const
 {
+    of_body.assign(body.size(), 0);
+    for (const auto& f : force) {
+        if (!f->is_counted(x, which)) continue;
+        const auto [i, j] = f->bodies();
+        if (i != ground) ++of_body[i];
+        if (j != ground && j != i) ++of_body[j];
+    }
+}
+
+template <class LimitOf>
+Model::StableStep Model::smallest_limit(const State& x, LimitOf limit_of) const
+{
+    std::vector<int> near;
+    count_contacts(x, Force::Counted::near, near);
     StableStep smallest;
     for (size_t k = 0; k < force.size(); ++k)
-        if (const double h = force[k]->stable_step(x, evaluation); h < smallest.h)
-            smallest = {h, static_cast<int>(k)};
+        if (const double h = limit_of(*force[k], near); h < smallest.h) smallest = {h, static_cast<int>(k)};
     return smallest;
+}
+
+Model::StableStep Model::stable_step(const State& x, LoadEvaluation evaluation) const
+{
+    return smallest_limit(x, [&](const Force& f, const std::vector<int>& near) {
+        return f.stable_step_with(x, evaluation, near);
+    });
 }
 
 Model::StableStep Model::stable_step(const State& x, const lie::Scheme& scheme) const
 {
-    StableStep smallest;
-    for (size_t k = 0; k < force.size(); ++k)
-        if (const double h = force[k]->stable_step_in(scheme, x); h < smallest.h)
-            smallest = {h, static_cast<int>(k)};
-    return smallest;
+    return smallest_limit(
+        x, [&](const Force& f, const std::vector<int>& near) { return f.stable_step_in(scheme, x, near); });
 }
 
 void Model::drop(const std::vector<int>& rows)

@@ -114,6 +114,11 @@ public:
     /// Indices of the forces that have this body among their bodies(), ascending
     std::span<const int> forces_on(int body) const;
 
+    /// Number of contacts of each body in the state x, for Force::stable_step_with() and is_stable_with()
+    void count_contacts(const State& x, Force::Counted which, std::vector<int>& of_body) const;
+    /// Weight of all bodies [N]: the largest static load of a contact
+    double weight() const { return total_mass * gravity.norm(); }
+
     /// Prepares the model and the state for a run from x. Called by dae::start().
     ///
     /// - All rows become part of the equations again, also those removed by drop().
@@ -233,6 +238,8 @@ public:
 private:
     template <class F>
     void for_rows_without_alpha(const State& x, F f) const;
+    template <class LimitOf>
+    StableStep smallest_limit(const State& x, LimitOf limit_of) const;
     void swap_drivers(State& x) const;
     void update_constraint_states(State& x, bool start) const;
     void set_switches(double t);
@@ -270,6 +277,7 @@ private:
     void refuse_jump(const TimeFunction& of, double t) const;
 
     lie::Mass inertia;
+    double total_mass = 0;  ///< of all bodies [kg]
     lie::Rows rows_pattern;
     lie::Tree joints{.joint = {}, .refusal = "the model has not been started"};
 };

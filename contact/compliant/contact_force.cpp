@@ -81,16 +81,15 @@ std::string ContactForce::start_error(const lie::State& x) const
 
 ContactState ContactForce::loaded_state(const lie::State& x) const
 {
-    double weight = 0;  // weight of all bodies: the largest static load of the contact
-    for (const double m : model.mass().m) weight += m * model.gravity.norm();
-    return contact.state_at_largest_compression(motion(x, i), motion(x, j), saved_history(x), weight);
+    return contact.state_at_largest_compression(motion(x, i), motion(x, j), saved_history(x), model.weight());
 }
 
-double ContactForce::stable_step(const lie::State& x, lie::LoadEvaluation evaluation) const
+double ContactForce::stable_step_with(const lie::State& x, lie::LoadEvaluation evaluation,
+                                      std::span<const int> near) const
 {
     try {
-        return contact.stable_step(loaded_state(x), motion(x, i), motion(x, j), near_contacts(x),
-                                   lie::damping_factor(evaluation));
+        return contact.stable_step(loaded_state(x), motion(x, i), motion(x, j),
+                                   contacts(x, Counted::near, near), lie::damping_factor(evaluation));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
@@ -113,12 +112,14 @@ ContactForce::NodePoint ContactForce::node_point(const lie::State& x) const
     return restored<NodePoint>(x.internal_state.data() + first_of_node_point());
 }
 
-bool ContactForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const
+bool ContactForce::is_stable_with(const lie::State& x, double h, lie::LoadEvaluation evaluation,
+                                  std::span<const int> touching) const
 {
     if (!is_active(x) || !is_touching(x)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactState now = contact.state_without_history(node_point(x).contact_point, bi, bj);
-    return contact.is_stable(h, lie::damping_factor(evaluation), now, bi, bj, touching_contacts(x));
+    return contact.is_stable(h, lie::damping_factor(evaluation), now, bi, bj,
+                             contacts(x, Counted::touching, touching));
 }
 
 void ContactForce::check_step(const lie::State& before, const lie::State& after) const

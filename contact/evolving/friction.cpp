@@ -93,27 +93,28 @@ Rates EvolvingFriction::damper_rates(const Instant& now, const lie::State& x) co
             .psi = last.psi};
 }
 
-double EvolvingFriction::stable_step(const lie::State& x, lie::LoadEvaluation /*evaluation*/) const
+double EvolvingFriction::stable_step_with(const lie::State& x, lie::LoadEvaluation /*evaluation*/,
+                                          std::span<const int> near) const
 {
     if (dae::Model::mode(contact, x) == EvolvingContact::fallback_active)
         return std::numeric_limits<double>::infinity();
     // The stiffness of Hertzian springs grows with F_N; the weight of all bodies is an estimate of the
     // largest F_N.
-    double weight = 0;
-    for (const double m : model.mass().m) weight += m * model.gravity.norm();
-    const double N = std::max(normal_force(x), weight);
+    const double N = std::max(normal_force(x), model.weight());
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactState now = friction_pair.contact_state(contact_point(x), N, bi, bj, {});
-    return friction_pair.stable_step(now, {.rigid = true}, bi, bj, near_contacts(x));
+    return friction_pair.stable_step(now, {.rigid = true}, bi, bj, contacts(x, Counted::near, near));
 }
 
-bool EvolvingFriction::is_stable(const lie::State& x, double h, lie::LoadEvaluation /*evaluation*/) const
+bool EvolvingFriction::is_stable_with(const lie::State& x, double h, lie::LoadEvaluation /*evaluation*/,
+                                      std::span<const int> touching) const
 {
     const double N = normal_force(x);
     if (!(N > 0)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactState now = friction_pair.contact_state(contact_point(x), N, bi, bj, {});
-    return friction_pair.is_stable(h, 1, now, {.rigid = true}, bi, bj, touching_contacts(x));
+    return friction_pair.is_stable(h, 1, now, {.rigid = true}, bi, bj,
+                                   contacts(x, Counted::touching, touching));
 }
 
 }  // namespace hilda::contact

@@ -259,30 +259,43 @@ double TrackedForce::internal_energy(const lie::State& x) const
     return pair().elastic_energy(now.contact_state, load(now, x), now.history);
 }
 
-template <class IsCounted>
-int TrackedForce::contacts_of(int body, IsCounted is_counted) const
+bool TrackedForce::is_counted(const lie::State& x, Counted which) const
 {
-    int count = 1;
-    for (const int k : model.forces_on(body)) {
-        const auto* other = dynamic_cast<const TrackedForce*>(model.forces()[k].get());
-        if (other == nullptr || other == this) continue;
-        if (other->normal_constraint() != nullptr && other->normal_constraint() == normal_constraint())
-            continue;  // another force of the same contact; only one of them is active
-        if (is_counted(*other)) ++count;
+    try {
+        return which == Counted::near ? is_near_contact(x) : is_touching(x);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e, x);
     }
-    return count;
 }
 
-ContactCounts TrackedForce::near_contacts(const lie::State& x) const
+double TrackedForce::stable_step(const lie::State& x, lie::LoadEvaluation evaluation) const
 {
-    const auto is_near = [&](const TrackedForce& other) { return other.is_near_contact(x); };
-    return {contacts_of(i, is_near), contacts_of(j, is_near)};
+    std::vector<int> near;
+    model.count_contacts(x, Counted::near, near);
+    return stable_step_with(x, evaluation, near);
 }
 
-ContactCounts TrackedForce::touching_contacts(const lie::State& x) const
+bool TrackedForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const
 {
-    const auto touches = [&](const TrackedForce& other) { return other.is_touching(x); };
-    return {contacts_of(i, touches), contacts_of(j, touches)};
+    std::vector<int> touching;
+    model.count_contacts(x, Counted::touching, touching);
+    return is_stable_with(x, h, evaluation, touching);
+}
+
+ContactCounts TrackedForce::contacts(const lie::State& x, Counted which, std::span<const int> of_body) const
+{
+    int counted = is_counted(x, which) ? 1 : 0;
+    // Other forces of the same contact, of which only one is active, count once
+    if (normal_constraint() != nullptr)
+        for (const int k : model.forces_on(i != dae::ground ? i : j)) {
+            const auto* other = dynamic_cast<const TrackedForce*>(model.forces()[k].get());
+            if (other != nullptr && other != this && other->normal_constraint() == normal_constraint())
+                counted += other->is_counted(x, which);
+        }
+    const auto of = [&](int b) {
+        return b == dae::ground ? 1 : of_body[static_cast<size_t>(b)] - counted + 1;
+    };
+    return {of(i), of(j)};
 }
 
 void TrackedForce::rethrow(const lie::NumericalFailure& e, const lie::State& x) const

@@ -34,6 +34,12 @@ public:
     int last_body() const override { return std::max(i, j); }
     std::string label() const override { return "contact '" + name + "'"; }
 
+    /// Near: is_near_contact(). Touching: without detection, is_touching()
+    bool is_counted(const lie::State& x, Counted which) const override;
+    double stable_step(const lie::State& x,
+                       lie::LoadEvaluation evaluation = lie::LoadEvaluation::at_step) const final;
+    bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const final;
+
     int max_static_springs() const override { return 3; }
     int static_springs(const lie::State& x, StaticSpring* out) const override;
     void set_static_forces(lie::State& x, const StaticForce* forces) const override;
@@ -83,11 +89,9 @@ protected:
     /// True if the bodies are in contact or close to it; used to count the contacts of a body
     virtual bool is_near_contact(const lie::State& x) const = 0;
 
-    /// Numbers of contacts of both bodies that are near contact at x (is_near_contact()), with this one. The
-    /// ground counts as a body with one contact.
-    ContactCounts near_contacts(const lie::State& x) const;
-    /// The same for the contacts that are in contact according to their histories in x, without detection
-    ContactCounts touching_contacts(const lie::State& x) const;
+    /// Numbers of contacts of both bodies that count in x, with this one, from those of all bodies
+    /// (dae::Model::count_contacts()). The ground counts as a body with one contact.
+    ContactCounts contacts(const lie::State& x, Counted which, std::span<const int> of_body) const;
     /// Throws e again with the names of the bodies and the time of x appended
     [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
 
@@ -102,8 +106,6 @@ protected:
 
 private:
     Wrench load(const Instant& now, const lie::State& x) const;
-    template <class IsCounted>
-    int contacts_of(int body, IsCounted is_counted) const;
 
     const std::string name_i, name_j;
 };

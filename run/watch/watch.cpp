@@ -38,11 +38,13 @@ Watch::Watch(const dae::Model& model, const lie::State& x, const lie::Integrator
             with_limit.push_back(k);
     }
     values.deepest.resize(compliant.size());
+    touching.reserve(x.body.size());
 }
 
 void Watch::accepted(const lie::State& x, long n, int)
 {
     WatchRecord& r = values;
+    touching.clear();
     if (!scheme.adaptive)
         for (size_t b = 0; b < x.body.size(); ++b)
             if (const double w = x.body[b].omega_bar.squaredNorm() * grid.h * grid.h;
@@ -70,7 +72,9 @@ void Watch::check_stability(int k, const lie::State& x)
 {
     if (values.unstable.place >= 0 || scheme.adaptive) return;
     const auto number = static_cast<size_t>(k);
-    if (model.forces()[number]->is_stable(x, 2 / scheme.stability * grid.h, scheme.loads)) return;
+    if (touching.empty()) model.count_contacts(x, dae::Force::Counted::touching, touching);
+    if (model.forces()[number]->is_stable_with(x, 2 / scheme.stability * grid.h, scheme.loads, touching))
+        return;
     values.unstable.include(1, x.t, number);
     if (action == Action::strict || (action == Action::stop && values.ignore_stability == 0))
         stop("unstable_step", stability_finding().text);

@@ -124,7 +124,8 @@ private:
     const Limits limits;
     std::vector<int> with_limit;  ///< forces that may have a stability limit
     std::vector<std::pair<const contact::ContactForce*, int>> compliant;
-    WatchRecord values;  ///< without the energy
+    std::vector<int> touching;  ///< number of touching contacts of each body at this node; empty: not counted
+    WatchRecord values;         ///< without the energy
     EnergyBalance energy;
 };
 

@@ -72,11 +72,22 @@ Reactions largest_reactions(const dae::Model& model, const lie::State& x)
     return largest;
 }
 
-/// The stability limit of the force with the default integrator [s]
-double stable_step(const dae::Force& force, const lie::State& x)
-{
-    return force.stable_step(x, lie::scheme(run::default_integrator).loads);
-}
+/// Stability limits of forces in a state with the default integrator [s]
+class StableSteps {
+public:
+    StableSteps(const dae::Model& model, const lie::State& x) : x(x)
+    {
+        model.count_contacts(x, dae::Force::Counted::near, near);
+    }
+    double of(const dae::Force& force) const
+    {
+        return force.stable_step_with(x, lie::scheme(run::default_integrator).loads, near);
+    }
+
+private:
+    const lie::State& x;
+    std::vector<int> near;
+};
 
 /// Initial state of a compliant contact
 struct CompliantContactInfo {
@@ -89,6 +100,7 @@ struct CompliantContactInfo {
 std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, const lie::State& x)
 {
     std::vector<CompliantContactInfo> all;
+    const StableSteps stable_steps(model, x);
     for (const auto& force : model.forces()) {
         const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
         if (contact == nullptr || contact->normal_constraint() != nullptr) continue;
@@ -97,7 +109,7 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
                        .gap = m.contact_point.gap,
                        .N = std::max(0., m.N),
                        .curvature = 0.5 * (m.contact_point.K_i + m.contact_point.K_j).trace(),
-                       .stable_step = stable_step(*contact, x)});
+                       .stable_step = stable_steps.of(*contact)});
     }
     return all;
 }
@@ -149,6 +161,7 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
     using contact::EvolvingContact;
     std::vector<ContactConstraintInfo> all;
     const run::ContactOutputs contacts(model);
+    const StableSteps stable_steps(model, x);
     for (size_t k = 0; k < contacts.contacts.size(); ++k) {
         const run::ContactOutputs::Contact& contact = contacts.contacts[k];
         const EvolvingContact* c = contact.constraint;
@@ -181,8 +194,8 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
              .of_j = contact::principal_curvatures(contact_point.K_j, contact_point.n),
              .least_curvature = contact::least_curvature(contact_point) * c->L,
              .F_f = loads.F.norm()});
-        if (contact.friction != nullptr) all.back().stable_step = stable_step(*contact.friction, x);
-        if (contact.compliant != nullptr) all.back().stable_fallback = stable_step(*contact.compliant, x);
+        if (contact.friction != nullptr) all.back().stable_step = stable_steps.of(*contact.friction);
+        if (contact.compliant != nullptr) all.back().stable_fallback = stable_steps.of(*contact.compliant);
     }
     return all;
 }

@@ -80,6 +80,23 @@ TEST_CASE("the broad phase finds the same pairs in the same order as a search of
     CHECK(found == cloud.all_pairs(margin));
 }
 
+TEST_CASE("the cost of the broad phase does not grow with the ratio of the sizes", "[contact][broad]")
+{
+    const double ratio = GENERATE(1., 10., 1e4, 1e9);
+    // balls of 1 cm in a layer on a floor, and others of all sizes between them and the floor
+    Cloud cloud = random_cloud(5, 2000, 0.5, 0.005, 0.005);
+    for (Vec3& r : cloud.centre) r.z() *= 0.02;
+    const size_t balls = cloud.centre.size();
+    for (double size = 0.005; size <= 0.005 * ratio; size *= 10) {
+        cloud.centre.push_back(Vec3(0, 0, -size));
+        cloud.reach.push_back(size);
+    }
+    BroadPhase cells;
+    const auto& found = cells.find(cloud.centre, cloud.reach, 1e-3);
+    CHECK(found == cloud.all_pairs(1e-3));
+    CHECK(cells.tests < static_cast<long>(20 * balls + balls * (cloud.centre.size() - balls)));
+}
+
 TEST_CASE("the broad phase finds neighbours on cell borders and far from the origin", "[contact][broad]")
 {
     // a lattice with the spacing of a diameter: whole rows lie on cell borders, and the balls touch to

@@ -65,7 +65,13 @@ public:
     {
         return detect(bi, bj, history).gap;
     }
-    double smaller_of_sizes() const { return smaller_size; }  ///< of the two surfaces [m]
+    /// The contact point at these poses. lie::NumericalFailure as evaluate()
+    ContactPoint contact_point(const Motion& bi, const Motion& bj, const ContactHistory& history) const
+    {
+        return detect(bi, bj, history);
+    }
+    bool has_cheap_detector() const { return detector->is_cheap(); }  ///< see Detector::is_cheap()
+    double smaller_of_sizes() const { return smaller_size; }          ///< of the two surfaces [m]
 
     /// Whether the gap is at most 1e-6 times the smaller size of the surfaces
     bool is_near_contact(const Motion& bi, const Motion& bj, const ContactHistory& history) const;

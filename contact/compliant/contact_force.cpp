@@ -24,14 +24,15 @@ ContactForce::ContactForce(const std::string& name, const dae::Model& model, int
 ContactState ContactForce::evaluate(const lie::State& x, const ContactHistory& history) const
 {
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const NodePoint last = node_point(x);
+    if (contact.has_cheap_detector()) return contact.evaluate(bi, bj, history);
+    const NodePoint last = saved_point(x);
     return last.is_at(bi, bj) ? contact.evaluate_at(last.contact_point, bi, bj, history)
                               : contact.evaluate(bi, bj, history);
 }
 
 int ContactForce::internal_states() const
 {
-    return TrackedForce::internal_states() + reals<NodePoint>() +
+    return TrackedForce::internal_states() + node_point_states() +
            (other_points ? reals<OtherPoints::Pose>() : 0);
 }
 
@@ -41,20 +42,21 @@ void ContactForce::save(const Instant& now, lie::State& x) const
     TrackedForce::save(now, x);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     double* const saved = x.internal_state.data() + first_of_node_point();
-    contact::save(NodePoint{.r_i = bi.r,
-                            .r_j = bj.r,
-                            .A_i = bi.A,
-                            .A_j = bj.A,
-                            .contact_point = now.contact_state.contact_point},
-                  saved);
+    if (node_point_states() > 0)
+        contact::save(NodePoint{.r_i = bi.r,
+                                .r_j = bj.r,
+                                .A_i = bi.A,
+                                .A_j = bj.A,
+                                .contact_point = now.contact_state.contact_point},
+                      saved);
     if (!other_points || !(now.contact_state.N > 0)) return;
-    auto last = restored<OtherPoints::Pose>(saved + reals<NodePoint>());
+    auto last = restored<OtherPoints::Pose>(saved + node_point_states());
     try {
         other_points->check(name, bi, bj, now.contact_state.contact_point, last);
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
-    contact::save(last, saved + reals<NodePoint>());
+    contact::save(last, saved + node_point_states());
 }
 
 bool ContactForce::is_active(const lie::State& x) const
@@ -107,9 +109,15 @@ void ContactForce::check_derivatives(const lie::State& x, dae::DerivativeFinding
     }
 }
 
-ContactForce::NodePoint ContactForce::node_point(const lie::State& x) const
+ContactForce::NodePoint ContactForce::saved_point(const lie::State& x) const
 {
     return restored<NodePoint>(x.internal_state.data() + first_of_node_point());
+}
+
+ContactPoint ContactForce::node_point(const lie::State& x) const
+{
+    return contact.has_cheap_detector() ? contact.contact_point(motion(x, i), motion(x, j), {})
+                                        : saved_point(x).contact_point;
 }
 
 bool ContactForce::is_stable_with(const lie::State& x, double h, lie::LoadEvaluation evaluation,
@@ -117,7 +125,7 @@ bool ContactForce::is_stable_with(const lie::State& x, double h, lie::LoadEvalua
 {
     if (!is_active(x) || !is_touching(x)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);
-    const ContactState now = contact.state_without_history(node_point(x).contact_point, bi, bj);
+    const ContactState now = contact.state_without_history(node_point(x), bi, bj);
     return contact.is_stable(h, lie::damping_factor(evaluation), now, bi, bj,
                              contacts(x, Counted::touching, touching));
 }
@@ -130,7 +138,7 @@ void ContactForce::check_step(const lie::State& before, const lie::State& after)
     if (!is_active(before) || is_touching(before)) return;
     const Motion &i_begin = motion(before, i), &i_end = motion(after, i), &j_begin = motion(before, j),
                  &j_end = motion(after, j);
-    const ContactPoint at = node_point(before).contact_point;
+    const ContactPoint at = node_point(before);
     const double h = after.t - before.t, size = contact.smaller_of_sizes();
     const Passage passage(i_begin, i_end, j_begin, j_end, h, (at.C_i - i_begin.r).norm(),
                           (at.C_j - j_begin.r).norm());
@@ -151,12 +159,12 @@ void ContactForce::check_step(const lie::State& before, const lie::State& after)
 
 double ContactForce::overlap(const lie::State& x) const
 {
-    return is_active(x) && is_touching(x) ? std::max(0., -node_point(x).contact_point.gap) : 0;
+    return is_active(x) && is_touching(x) ? std::max(0., -node_point(x).gap) : 0;
 }
 
 double ContactForce::relative_overlap(const lie::State& x) const
 {
-    return is_active(x) && is_touching(x) ? contact.relative_overlap(node_point(x).contact_point) : 0;
+    return is_active(x) && is_touching(x) ? contact.relative_overlap(node_point(x)) : 0;
 }
 
 }  // namespace hilda::contact

@@ -6,6 +6,7 @@
 #include "contact/compliant/contact.hpp"
 #include "contact/detection/other_points.hpp"
 #include "contact/friction/tracked_force.hpp"
+#include "contact/internal_state.hpp"
 
 namespace hilda::contact {
 
@@ -55,8 +56,9 @@ private:
 
     /// Internal state in addition to that of TrackedForce: the contact point of the last accepted node and
     /// the poses of the bodies there. Loads, energy and output at these poses do not detect the contact
-    /// again. The poses are compared bit by bit, so the result depends on x only. For a pair with
-    /// other_points their OtherPoints::Pose follows.
+    /// again. The poses are compared bit by bit, so the result depends on x only. A pair with a cheap
+    /// detector has none: to copy it with the state takes more time. For a pair with other_points their
+    /// OtherPoints::Pose follows.
     struct NodePoint {
         Vec3 r_i, r_j;
         Mat3 A_i, A_j;
@@ -67,9 +69,12 @@ private:
             return r_i == bi.r && r_j == bj.r && A_i == bi.A && A_j == bj.A;
         }
     };
-    NodePoint node_point(const lie::State& x) const;
+    NodePoint saved_point(const lie::State& x) const;
+    /// The contact point of the last accepted node, if x or its internal states are those of the node
+    ContactPoint node_point(const lie::State& x) const;
     /// Index of NodePoint in State::internal_state
     int first_of_node_point() const { return first_internal_state + TrackedForce::internal_states(); }
+    int node_point_states() const { return contact.has_cheap_detector() ? 0 : reals<NodePoint>(); }
 
     const std::unique_ptr<const OtherPoints> other_points;  ///< nullptr for a pair with one contact point
     const dae::Constraint* constraint = nullptr;

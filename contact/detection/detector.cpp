@@ -21,6 +21,7 @@ public:
     {
         return detect_exchanged(*ji, bi, bj, from);
     }
+    bool is_cheap() const override { return ji->is_cheap(); }
 
 private:
     const std::unique_ptr<Detector> ji;

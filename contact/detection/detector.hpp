@@ -38,6 +38,9 @@ public:
     /// point is found, and the derived NoUniqueContactPoint if the pose has no unique contact point. The
     /// message states the reason. The caller adds the name of the contact.
     virtual ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints* from) const = 0;
+
+    /// Whether detect() takes less time than to store a contact point in the state, and does not use `from`
+    virtual bool is_cheap() const { return false; }
 };
 
 /// The detector for a pair of surfaces: a closed form if there is one, otherwise Newton's method on the

@@ -25,6 +25,7 @@ public:
                 .K_i = 1 / R * (Mat3::Identity() - n * n.transpose()),
                 .K_j = Mat3::Zero()};
     }
+    bool is_cheap() const override { return true; }
 
 private:
     const Vec3 c_bar_i;

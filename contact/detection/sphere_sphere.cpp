@@ -32,6 +32,7 @@ public:
                 .K_i = 1 / R_i * P,
                 .K_j = 1 / R_j * P};
     }
+    bool is_cheap() const override { return true; }
 
 private:
     const Vec3 c_bar_i;

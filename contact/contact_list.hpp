@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "dae/model_types.hpp"
+#include "contact/contact_pairs.hpp"
 
 #include <memory>
 #include <string>
@@ -25,13 +25,20 @@ struct ContactPair {
     std::string surface_i = "surface_i", surface_j = "surface_j";
     /// What the reader keeps from one pair of a group for the next, empty for the first pair
     std::shared_ptr<const void>& shared;
+    /// The pairs of a large group, for its first pair: the reader may add all of them as a ContactGroup
+    const ContactPairs* group = nullptr;
+    const std::string& group_name;
 };
+
+/// A group with more pairs than this is read as a ContactGroup if its contacts are compliant.
+constexpr long most_single_pairs = 30;
 
 /// Reads an element of "contacts", except for the keys name, body_i, body_j and bodies, and adds the forces
 /// and general constraints of one pair of bodies to the model. It is called for each pair of a group. Throws
 /// PlacedError, or lie::InvalidInput or io::ExpressionError without a location from the constructor of the
 /// contact.
-using ReadContact = void (*)(dae::ObjectReader& o, const ContactPair& pair);
+/// Returns whether it has added all pairs of pair.group.
+using ReadContact = bool (*)(dae::ObjectReader& o, const ContactPair& pair);
 
 /// Reads the key "contacts" of a model file, and adds what `read` makes of its pairs.
 void read_contacts(dae::ObjectReader& model, const dae::PartialModel& to, ReadContact read);

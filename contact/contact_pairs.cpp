@@ -28,29 +28,20 @@ std::vector<int> read_group(dae::ObjectReader& o, std::string_view key, const da
     }
     const io::Json::List& list = o.list(key, true);
     if (list.empty()) o.fail(key, std::string(key) + " must not be an empty list");
+    std::set<int> known;
     for (std::size_t k = 0; k < list.size(); ++k) {
         numbers.push_back(bodies.body_of_list(o, key, k));
-        if (std::find(numbers.begin(), numbers.end() - 1, numbers.back()) != numbers.end() - 1)
+        if (!known.insert(numbers.back()).second)
             o.fail(key, k, std::string(key) + " lists a body twice, got " + dae::described(list[k]));
     }
     return numbers;
 }
 
-/// Each of `first` with each of `second`, without pairs of a body with itself and repeated pairs
-std::vector<std::pair<int, int>> pairs_of(dae::ObjectReader& o, std::string_view key,
-                                          const std::vector<int>& first, const std::vector<int>& second)
+void refuse_too_many(dae::ObjectReader& o, std::string_view key, const std::vector<int>& numbers)
 {
-    std::vector<std::pair<int, int>> pairs;
-    std::set<std::pair<int, int>> known;
-    for (const int i : first)
-        for (const int j : second) {
-            if (i == j || !known.emplace(std::minmax(i, j)).second) continue;
-            pairs.emplace_back(i, j);
-            if (pairs.size() > ContactPairs::most)
-                o.fail(key, "a group may have at most " + std::to_string(ContactPairs::most) +
-                                " pairs of bodies, got more");
-        }
-    return pairs;
+    if (numbers.size() > ContactPairs::most_bodies)
+        o.fail(key, "a group may have at most " + std::to_string(ContactPairs::most_bodies) +
+                        " bodies, got " + std::to_string(numbers.size()));
 }
 
 /// Conditions on several keys of a contact, for the schema
@@ -69,6 +60,63 @@ constexpr const char* conditions =
     R"(normal law, spin needs a modulus.", "required": ["E_star"]}}})";
 
 }  // namespace
+
+void ContactPairs::index()
+{
+    const auto places_of = [](const std::vector<int>& list) {
+        std::vector<int> places;
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const auto at = static_cast<std::size_t>(list[k] + 1);
+            if (at >= places.size()) places.resize(at + 1, -1);
+            places[at] = static_cast<int>(k);
+        }
+        return places;
+    };
+    places_in_first = places_of(first), places_in_second = places_of(second);
+}
+
+int ContactPairs::place(const std::vector<int>& places, int body)
+{
+    const auto at = static_cast<std::size_t>(body + 1);
+    return at < places.size() ? places[at] : -1;
+}
+
+bool ContactPairs::has(int a, int b) const
+{
+    if (each_two) return a < b;
+    const int i = first[static_cast<std::size_t>(a)], j = second[static_cast<std::size_t>(b)];
+    if (i == j) return false;
+    const int other_a = place_in_first(j), other_b = place_in_second(i);
+    return other_a < 0 || other_b < 0 || number(a, b) < number(other_a, other_b);
+}
+
+std::pair<int, int> ContactPairs::pair(int number) const
+{
+    const auto width = static_cast<int>(second.size());
+    return {first[static_cast<std::size_t>(number / width)],
+            second[static_cast<std::size_t>(number % width)]};
+}
+
+long ContactPairs::count() const
+{
+    const auto n = static_cast<long>(first.size()), m = static_cast<long>(second.size());
+    if (each_two) return n * (n - 1) / 2;
+    const long common =
+        std::count_if(first.begin(), first.end(), [&](int b) { return place_in_second(b) >= 0; });
+    return n * m - common - common * (common - 1) / 2;
+}
+
+int ContactPairs::first_number() const
+{
+    for (int n = 0; n < numbers(); ++n)
+        if (has(n)) return n;
+    return -1;
+}
+
+std::string ContactPairs::name_of_pair(const lie::System& model, const std::string& name, int i, int j)
+{
+    return name + ": " + model.body_name(i) + '-' + model.body_name(j);
+}
 
 void define_contact(dae::ObjectReader& o)
 {
@@ -107,27 +155,34 @@ ContactPairs read_contact_pairs(dae::ObjectReader& o, const dae::BodyFinder& bod
         if (!is_group(o, "bodies", bodies))
             o.fail("bodies",
                    "bodies must be a list of bodies or \"all\", got " + dae::described(*o.find("bodies")));
-        const std::vector<int> group = read_group(o, "bodies", bodies, count);
-        all = {.pairs = pairs_of(o, "bodies", group, group),
-               .is_group = true,
-               .surface_i = "surface",
-               .surface_j = "surface"};
-        if (all.pairs.empty())
-            o.fail("bodies", "a group must have at least two bodies, got " + std::to_string(group.size()));
+        all.first = read_group(o, "bodies", bodies, count);
+        refuse_too_many(o, "bodies", all.first);
+        all.second = all.first;
+        all.each_two = all.is_group = true;
+        all.surface_i = all.surface_j = "surface";
+        all.index();
+        if (all.count() == 0)
+            o.fail("bodies",
+                   "a group must have at least two bodies, got " + std::to_string(all.first.size()));
         return all;
     }
     const bool group_i = is_group(o, "body_i", bodies), group_j = is_group(o, "body_j", bodies);
     if (!group_i && !group_j) {
-        all.pairs = {bodies.pair(o)};
+        const auto [i, j] = bodies.pair(o);
+        all.first = {i}, all.second = {j};
+        all.index();
         return all;
     }
     const auto read = [&](const char* key, bool group) {
-        return group ? read_group(o, key, bodies, count) : std::vector<int>{bodies.body(o, key)};
+        std::vector<int> list =
+            group ? read_group(o, key, bodies, count) : std::vector<int>{bodies.body(o, key)};
+        refuse_too_many(o, key, list);
+        return list;
     };
-    const std::vector<int> first = read("body_i", group_i), second = read("body_j", group_j);
-    all.pairs = pairs_of(o, group_i ? "body_i" : "body_j", first, second);
+    all.first = read("body_i", group_i), all.second = read("body_j", group_j);
     all.is_group = true;
-    if (all.pairs.empty())
+    all.index();
+    if (all.count() == 0)
         o.fail("body_j", "body_i and body_j must contain two different bodies, got the same body");
     return all;
 }

@@ -17,7 +17,7 @@
 ///
 /// A key whose default depends on other keys enters the canonical text only if it is given.
 
-#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/contact_group.hpp"
 #include "contact/contact_list.hpp"
 #include "contact/contact_types.hpp"
 #include "contact/evolving/friction.hpp"
@@ -411,13 +411,17 @@ struct Surfaces {
     }
 };
 
-void read_contact(ObjectReader& o, const ContactPair& pair)
+bool read_contact(ObjectReader& o, const ContactPair& pair)
 {
     if (pair.shared == nullptr) pair.shared = std::make_shared<const Surfaces>(o, pair);
     const Surfaces& surfaces = *static_cast<const Surfaces*>(pair.shared.get());
     for (const std::string& key : {pair.surface_i, pair.surface_j}) o.find(key);
-    o.record("surface_i", surfaces.text_i);
-    o.record("surface_j", surfaces.text_j);
+    if (pair.group != nullptr && pair.group->each_two) {
+        o.record("surface", surfaces.text_i);
+    } else {
+        o.record("surface_i", surfaces.text_i);
+        o.record("surface_j", surfaces.text_j);
+    }
     const Shape &i = surfaces.i, &j = surfaces.j;
     ObjectReader normal = o.object("normal",
                                    {"Normal law: how the normal force is computed.",
@@ -426,11 +430,21 @@ void read_contact(ObjectReader& o, const ContactPair& pair)
     std::vector<std::string> types = normal_laws(false);
     types.emplace_back("constraint");
     const std::string type = normal.one_of("type", types);
-    if (type == "constraint") return add_evolving(o, std::move(normal), pair, i, j);
+    if (type == "constraint") {
+        if (pair.group == nullptr) add_evolving(o, std::move(normal), pair, i, j);
+        return false;
+    }
     const std::shared_ptr<const NormalLaw> law = read_normal(normal, type);
     o.record("normal", normal.finish());
-    pair.model.load(std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law,
-                                                   read_friction(o, *law)));
+    if (pair.group != nullptr && !ContactGroup::may_have(*law)) return false;
+    const std::shared_ptr<const FrictionModel> friction = read_friction(o, *law);
+    if (pair.group != nullptr)
+        pair.model.load(
+            std::make_unique<ContactGroup>(pair.group_name, pair.model, *pair.group, i, j, law, friction));
+    else
+        pair.model.load(
+            std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law, friction));
+    return pair.group != nullptr;
 }
 
 const bool registered_model_contacts = dae::register_contact_reader(

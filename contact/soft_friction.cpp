@@ -51,15 +51,16 @@ std::vector<std::string> soft_friction_warnings(const dae::Model& model, const l
     const auto add = [&](std::string what) {
         if (!what.empty()) all.push_back(std::move(what));
     };
-    for (const auto& force : model.forces()) {
-        const auto* f = dynamic_cast<const TrackedForce*>(force.get());
-        if (f == nullptr || !f->is_active(x)) continue;
+    model.for_forces(x, [&](const dae::Force& force, int) {
+        const auto* f = dynamic_cast<const TrackedForce*>(&force);
+        if (f == nullptr || !f->is_active(x)) return;
         const auto* law = dynamic_cast<const SlidingFriction*>(&f->law());
+        if (law == nullptr) return;
         const ContactState now = f->at(x).contact_state;
-        if (law == nullptr || !(now.N > 0)) continue;
+        if (!(now.N > 0)) return;
         add(warning(f->name, now.contact_point, dae::motion(x, f->i), dae::motion(x, f->j),
                     law->p.mu_k * now.N, law->springs(now).K_slide));
-    }
+    });
     for (const auto& constraint : model.general_constraints()) {
         const auto* c = dynamic_cast<const EvolvingContact*>(constraint.get());
         if (c == nullptr || !c->is_regularised() || dae::Model::inactive(*c, x)) continue;

@@ -117,6 +117,13 @@ void Model::load(std::unique_ptr<Force> f)
     force.push_back(std::move(f));
 }
 
+std::shared_ptr<const Force> Model::force_of(int number) const
+{
+    const auto others = static_cast<int>(force.size());
+    if (number >= others) return near.force(number - others);
+    return {std::shared_ptr<const Force>(), force[static_cast<size_t>(number)].get()};
+}
+
 std::span<const int> Model::forces_on(int b) const
 {
     if (b == ground || b >= static_cast<int>(forces_on_body.size())) return {};
@@ -138,6 +145,14 @@ void Model::prepare(State& x)
     for (size_t k = 0; k < force.size(); ++k)
         if (const std::string reason = force[k]->start_error(x); !reason.empty())
             throw ForceError(force[k]->label() + ": " + reason, static_cast<int>(k));
+    near.set_layout(bodies(), 0, 0);
+    if (const auto list = near.found(x); !near.empty())
+        for (const NearForces::List::Entry& e : list->entry)
+            if (const std::string reason = e.force->start_error(x); !reason.empty()) {
+                const std::string& place = near.group_of(e.number).first->place;
+                throw ForceError((place.empty() ? "" : place + ": ") + e.force->label() + ": " + reason,
+                                 static_cast<int>(force.size()) + e.number);
+            }
     discrete_states = internal_states = 0;
     for (Row& r : row) {
         r.block->place.internal_state = internal_states;
@@ -195,6 +210,8 @@ void Model::prepare(State& x)
         internal_states += f->internal_states();
     }
     x.discrete_state.resize(discrete_states, 0);
+    near.set_layout(bodies(), discrete_states, internal_states);
+    x.derived = nullptr;
     x.lambda = Eigen::VectorXd::Zero(rows());
     swap_drivers(x);  // a driver may start near its singularity
     set_internal_state_at_start(x);
@@ -204,16 +221,30 @@ void Model::set_internal_state_at_start(State& x) const
 {
     for (const auto& f : force)
         std::fill_n(x.discrete_state.begin() + f->first_discrete_state, f->discrete_states(), 0);
-    x.internal_state.assign(internal_states, 0);
+    if (near.empty()) {
+        x.internal_state.assign(internal_states, 0);
+    } else {
+        x.internal_state.resize(std::max(x.internal_state.size(), static_cast<size_t>(internal_states)));
+        std::fill_n(x.internal_state.begin(), internal_states, 0.);
+        near.restart(x);
+    }
     update_constraint_states(x, true);
-    for (const auto& f : force) f->update_internal_state(x);
+    for_forces(x, [&](const Force& f, int) { f.update_internal_state(x); });
+}
+
+bool Model::fits(const State& x) const
+{
+    if (!near.empty()) return near.fits(x);
+    return static_cast<int>(x.discrete_state.size()) == discrete_states &&
+           static_cast<int>(x.internal_state.size()) == internal_states;
 }
 
 void Model::set_tree(const State& x) { joints = find_tree(*this, x); }
 
 bool Model::internal_states_are_history() const
 {
-    return std::any_of(force.begin(), force.end(), [](const auto& f) { return f->internal_states() > 0; }) ||
+    return !near.empty() ||
+           std::any_of(force.begin(), force.end(), [](const auto& f) { return f->internal_states() > 0; }) ||
            std::any_of(general_constraint.begin(), general_constraint.end(), [](const auto& c) {
                return c->algebraic_variables() > 0 && c->internal_states() > 0;
            });
@@ -231,22 +262,23 @@ Model::MotionEnd Model::motion_end() const
 void Model::count_contacts(const State& x, Force::Counted which, std::vector<int>& of_body) const
 {
     of_body.assign(body.size(), 0);
-    for (const auto& f : force) {
-        if (!f->is_counted(x, which)) continue;
-        const auto [i, j] = f->bodies();
+    for_forces(x, [&](const Force& f, int) {
+        if (!f.is_counted(x, which)) return;
+        const auto [i, j] = f.bodies();
         if (i != ground) ++of_body[i];
         if (j != ground && j != i) ++of_body[j];
-    }
+    });
 }
 
 template <class LimitOf>
 Model::StableStep Model::smallest_limit(const State& x, LimitOf limit_of) const
 {
-    std::vector<int> near;
-    count_contacts(x, Force::Counted::near, near);
+    std::vector<int> counts;
+    count_contacts(x, Force::Counted::near, counts);
     StableStep smallest;
-    for (size_t k = 0; k < force.size(); ++k)
-        if (const double h = limit_of(*force[k], near); h < smallest.h) smallest = {h, static_cast<int>(k)};
+    for_forces(x, [&](const Force& f, int number) {
+        if (const double h = limit_of(f, counts); h < smallest.h) smallest = {h, number};
+    });
     return smallest;
 }
 

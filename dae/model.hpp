@@ -6,7 +6,7 @@
 
 #include "dae/block.hpp"
 #include "dae/constraints/contact_constraint.hpp"
-#include "dae/force.hpp"
+#include "dae/forces/near_forces.hpp"
 #include "lie/check.hpp"
 #include "lie/system.hpp"
 
@@ -35,7 +35,7 @@ class ForceError : public lie::InvalidInput {
 public:
     ForceError(const std::string& what, int force) : InvalidInput(what), force(force) {}
 
-    int force;  ///< its index in Model::forces()
+    int force;  ///< its number, see Model::for_forces()
 };
 
 /// A multibody model.
@@ -111,6 +111,21 @@ public:
     requires std::derived_from<F, Force>
     void load(F force) { load(std::make_unique<F>(std::move(force))); }
     const std::vector<std::unique_ptr<Force>>& forces() const { return force; }
+    /// Adds forces between many pairs of bodies, of which the near pairs are evaluated.
+    void load(std::unique_ptr<ForceGroup> group) { near.add(std::move(group)); }
+    /// The forces of the groups
+    const NearForces& near_forces() const { return near; }
+    /// Calls f(force, number) for each force of forces() and then for the near pairs of the groups in x. The
+    /// numbers of the pairs follow those of forces().
+    template <class F>
+    void for_forces(const State& x, F f) const
+    {
+        for (size_t k = 0; k < force.size(); ++k) f(*force[k], static_cast<int>(k));
+        const auto others = static_cast<int>(force.size());
+        near.visit(x, [&](const Force& one, int number) { f(one, others + number); });
+    }
+    /// The force with a number of for_forces(). That of a pair has the states of a pair that is not near.
+    std::shared_ptr<const Force> force_of(int number) const;
     /// Indices of the forces that have this body among their bodies(), ascending
     std::span<const int> forces_on(int body) const;
 
@@ -119,6 +134,8 @@ public:
     /// Weight of all bodies [N]: the largest static load of a contact
     double weight() const { return total_mass * gravity.norm(); }
 
+    /// Whether the sizes of the discrete and internal states of a state, such as one from a checkpoint, fit.
+    bool fits(const State& x) const;
     /// Prepares the model and the state for a run from x. Called by dae::start().
     ///
     /// - All rows become part of the equations again, also those removed by drop().
@@ -135,7 +152,7 @@ public:
     /// implicit evaluation has no limit for springs and dampers (Force::spring_rows); contacts keep theirs.
     struct StableStep {
         double h = std::numeric_limits<double>::infinity();  ///< [s]
-        int force = -1;  ///< index of the force, -1 if no force has a limit
+        int force = -1;  ///< number of the force, see for_forces(); -1 if no force has a limit
     };
     StableStep stable_step(const State& x, LoadEvaluation evaluation = LoadEvaluation::at_step) const;
     /// The same for a scheme, which may evaluate springs implicitly
@@ -264,6 +281,7 @@ private:
     std::vector<ContactConstraint*> contacts;  ///< those of them that are contacts
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;
+    NearForces near;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state
     int switching_functions = 0;                   ///< of all forces
     bool block_counts_turns = false;

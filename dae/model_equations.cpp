@@ -23,6 +23,8 @@ constexpr double swap_threshold = 0.9;
 // The complement must satisfy |Φ| ≤ swap_tolerance where it replaces the driver. It does not if the driven
 // vectors have left their common plane of rotation.
 constexpr double swap_tolerance = 1e-6;
+// Largest number of pairs of groups that have blocks in the variation of the loads
+constexpr int most_pairs_of_pattern = 100000;
 
 }  // namespace
 
@@ -32,7 +34,7 @@ void Model::loads(const State& x, lie::Loads& out) const
         out.F[b] = inertia.m[b] * gravity;
         out.n_bar[b].setZero();
     }
-    for (const auto& f : force) f->add(x, out);
+    for_forces(x, [&](const Force& f, int) { f.add(x, out); });
     if (x.applied_loads.empty()) return;
     const double* applied = x.applied_loads.data();
     for (size_t b = 0; b < body.size(); ++b, applied += 6) {
@@ -198,6 +200,8 @@ void Model::gamma_variation(const State& x, lie::GammaVariation& out) const
     });
 }
 
+/// The blocks of the near forces follow those of the other forces: one for each body and, if the groups do
+/// not have too many pairs, two for each pair. Without them Newton's method converges more slowly.
 lie::LoadVariation Model::load_pattern() const
 {
     lie::LoadVariation out;
@@ -205,6 +209,20 @@ lie::LoadVariation Model::load_pattern() const
         for (const int by : f->bodies())
             for (const int on : f->bodies())
                 if (on != ground && by != ground) out.block.push_back({.on = on, .by = by});
+    if (!near.empty()) {
+        for (int b = 0; b < bodies(); ++b) out.block.push_back({.on = b, .by = b});
+        if (near.numbers() <= most_pairs_of_pattern)
+            for (int n = 0; n < near.numbers(); ++n) {
+                const auto [group, pair] = near.group_of(n);
+                if (!group->has_pair(pair)) {
+                    out.block.push_back({.on = 0, .by = 0}), out.block.push_back({.on = 0, .by = 0});
+                    continue;
+                }
+                const auto [i, j] = group->bodies(pair);
+                const int a = std::max(i, j), b = i == ground || j == ground ? a : std::min(i, j);
+                out.block.push_back({.on = a, .by = b}), out.block.push_back({.on = b, .by = a});
+            }
+    }
     out.plus = out.minus = lie::Loads(bodies());
     return out;
 }
@@ -228,6 +246,27 @@ void Model::load_variation(const State& x, lie::LoadVariation& out) const
                 if (bodies[on] != ground && bodies[by] != ground)
                     (block++)->d << d.block<6, 6>(6 * on, 6 * by), d.block<6, 6>(6 * on, 12 + 6 * by);
     }
+    if (near.empty()) return;
+    for (lie::LoadVariation::Block* b = block; b != out.block.data() + out.block.size(); ++b) b->d.setZero();
+    const bool has_pairs = near.numbers() <= most_pairs_of_pattern;
+    near.visit(x, [&](const Force& f, int number) {
+        if (!f.load_derivatives(x, d)) {
+            if (!copied) lie::copy(x, out.x);
+            copied = true;
+            difference_loads(f, x, out, d);
+        }
+        const std::array<int, 2> of = f.bodies();
+        const auto add = [&](lie::LoadVariation::Block& to, int on, int by) {
+            to.d.leftCols<6>() += d.block<6, 6>(6 * on, 6 * by);
+            to.d.rightCols<6>() += d.block<6, 6>(6 * on, 12 + 6 * by);
+        };
+        for (int k = 0; k < 2; ++k)
+            if (of[k] != ground) add(block[of[k]], k, k);
+        if (!has_pairs || of[0] == ground || of[1] == ground) return;
+        const int larger = of[0] > of[1] ? 0 : 1;
+        add(block[bodies() + 2 * number], larger, 1 - larger);
+        add(block[bodies() + 2 * number + 1], 1 - larger, larger);
+    });
 }
 
 lie::Springs Model::spring_pattern() const
@@ -353,16 +392,22 @@ double Model::potential_energy(const State& x) const
 {
     double e = 0;
     for (size_t b = 0; b < body.size(); ++b) e -= inertia.m[b] * gravity.dot(x.body[b].r);
-    for (const auto& f : force) e += f->potential_energy(x);
+    for_forces(x, [&](const Force& f, int) { e += f.potential_energy(x); });
     return e;
 }
 
 void Model::accepted(const State& before, State& after) const
 {
-    for (const auto& f : force) f->check_step(before, after);
+    if (near.empty() || near.is_kept(before, after)) {
+        for_forces(after, [&](const Force& f, int) { f.check_step(before, after); });
+    } else {
+        State with_new_pairs = before;
+        near.renew(with_new_pairs, after);
+        for_forces(after, [&](const Force& f, int) { f.check_step(with_new_pairs, after); });
+    }
     swap_drivers(after);
     update_constraint_states(after, false);
-    for (const auto& f : force) f->update_internal_state(after);
+    for_forces(after, [&](const Force& f, int) { f.update_internal_state(after); });
 }
 
 void Model::update_constraint_states(State& x, bool start) const

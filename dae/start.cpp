@@ -346,8 +346,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
             "the friction that holds bodies at rest could not be found at the start: its "
             "springs start unstretched");
     for (const Slipping& one : friction.slipping)
-        report.warnings.push_back(model.forces()[static_cast<size_t>(one.force)]->label() +
-                                  ": its bodies are at rest, and " + one.name + " of " + number(one.needed) +
+        report.warnings.push_back(model.force_of(one.force)->label() + ": its bodies are at rest, and " +
+                                  one.name + " of " + number(one.needed) +
                                   " would hold them, more than the largest, " + number(one.bound) +
                                   "; they begin to slip");
     // If all rows are kept, the contradictory ones are not known: any row may have the residual.

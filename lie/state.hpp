@@ -5,9 +5,16 @@
 
 #include "lie/so3.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace hilda::lie {
+
+/// Lists that a system derives from the numbers of a state, such as the pairs of bodies that are close to
+/// each other. They do not change once they exist, so copies of a state share them.
+struct DerivedLists {
+    virtual ~DerivedLists() = default;
+};
 
 /// Pose, velocity and acceleration of one body.
 ///
@@ -39,6 +46,9 @@ struct State {
     /// frame, at the centre of mass] and n̄ [N m, body frame] of each body. They are constant during a step.
     /// Empty: none
     std::vector<double> applied_loads;
+    /// What the system derives from the other members; not part of checkpoints. Empty: the system derives it
+    /// when it needs it.
+    std::shared_ptr<const DerivedLists> derived = nullptr;
 };
 
 }  // namespace hilda::lie

@@ -170,7 +170,8 @@ void TrajectoryRecorder::accepted(const State& node, long n, int /*iterations*/)
                               .discrete_state = node.discrete_state,
                               .internal_state = node.internal_state,
                               .history = {},
-                              .applied_loads = node.applied_loads});
+                              .applied_loads = node.applied_loads,
+                              .derived = node.derived});
 }
 
 Trajectory march(State x, Integrator& integrator, const TimeGrid& grid, std::span<Observer* const> observers)

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -22,17 +23,33 @@ namespace {
 /// The first force or constraint without a finite value in the state x; empty if all values are finite
 std::string not_finite(const dae::Model& model, const lie::State& x)
 {
-    for (const auto& force : model.forces()) {
-        lie::Loads loads(model.bodies());
+    std::string found;
+    lie::Loads loads(model.bodies());
+    const auto look = [&](const dae::Force& force, int) {
+        if (!found.empty()) return;
         try {
-            force->add(x, loads);
+            force.add(x, loads);
         } catch (const lie::NumericalFailure&) {
-            return force->label();
+            found = force.label();
+            return;
         }
-        for (int b = 0; b < model.bodies(); ++b)
-            if (!loads.F[b].allFinite() || !loads.n_bar[b].allFinite())
-                return fmt::format("{} on body '{}'", force->label(), model.body_name(b));
+        const auto is_finite = [&](int b) { return loads.F[b].allFinite() && loads.n_bar[b].allFinite(); };
+        const std::array<int, 2> of = force.bodies();
+        if (of != std::array{dae::ground, dae::ground}) {
+            for (const int b : of)
+                if (b != dae::ground && !is_finite(b) && found.empty())
+                    found = fmt::format("{} on body '{}'", force.label(), model.body_name(b));
+            return;
+        }
+        for (int b = 0; b < model.bodies() && found.empty(); ++b)
+            if (!is_finite(b)) found = fmt::format("{} on body '{}'", force.label(), model.body_name(b));
+    };
+    try {
+        model.for_forces(x, look);
+    } catch (const lie::NumericalFailure& failure) {  // of the search for near pairs
+        if (found.empty()) return failure.what();
     }
+    if (!found.empty()) return found;
     for (const dae::Model::Row& row : model.all_rows())
         if (!std::isfinite(model.scaled_residual(row, x))) return model.name_of(row);
     return {};
@@ -43,17 +60,24 @@ std::string largest_load(const dae::Model& model, const lie::State& x)
 {
     std::string name;
     double largest = 0;
-    for (const auto& force : model.forces()) {
-        lie::Loads loads(model.bodies());
-        force->add(x, loads);
-        for (int b = 0; b < model.bodies(); ++b)
+    lie::Loads loads(model.bodies());
+    model.for_forces(x, [&](const dae::Force& force, int) {
+        const auto look = [&](int b) {
             for (const auto& [load, unit] : {std::pair{&loads.F[b], "N"}, {&loads.n_bar[b], "N m"}})
                 if (const double size = load->stableNorm(); size > largest) {
                     largest = size;
-                    name = fmt::format("largest load: {} on body '{}', {:.3g} {}", force->label(),
+                    name = fmt::format("largest load: {} on body '{}', {:.3g} {}", force.label(),
                                        model.body_name(b), size, unit);
                 }
-    }
+            loads.F[b].setZero(), loads.n_bar[b].setZero();
+        };
+        force.add(x, loads);
+        const std::array<int, 2> of = force.bodies();
+        if (of == std::array{dae::ground, dae::ground})
+            for (int b = 0; b < model.bodies(); ++b) look(b);
+        for (const int b : of)
+            if (b != dae::ground) look(b);
+    });
     return name;
 }
 

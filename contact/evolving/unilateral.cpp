@@ -424,6 +424,7 @@ std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const 
     };
     for (const auto& f : model.forces())
         if (dynamic_cast<const ContactForce*>(f.get()) != nullptr) refuse_adaptive(f->label());
+    for (const auto& group : model.near_forces().all_groups()) refuse_adaptive(group->example().label());
     for (const auto& c : model.general_constraints())
         if (c->algebraic_variables() > 0) refuse_adaptive("contact '" + c->name + "'");
     for (const auto& c : model.general_constraints())

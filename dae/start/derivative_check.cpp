@@ -261,6 +261,15 @@ std::vector<std::string> wrong_derivatives(const Model& model, const lie::State&
         force.check_derivatives(x, out);
         if (out.is_next(typeid(force))) check_loads(force, near, work, out.lines);
     }
+    for (const auto& group : model.near_forces().all_groups()) {
+        bool is_checked = false;
+        model.near_forces().visit(x, [&](const Force& force, int number) {
+            if (is_checked || model.near_forces().group_of(number).first != group.get()) return;
+            is_checked = true;
+            force.check_derivatives(x, out);
+            if (out.is_next(typeid(force))) check_loads(force, near, work, out.lines);
+        });
+    }
     return std::move(out.lines);
 }
 

@@ -28,6 +28,7 @@ constexpr double margin = 1e-8;      // relative to the bound; a force above its
 /// A spring of a force, and its state
 struct Held {
     int force = 0, number = 0;  ///< number of the force in the model, and of the spring in the force
+    const Force* of = nullptr;  ///< the force
     Force::StaticSpring spring;
     bool slips = false;
     Eigen::Vector2d f = Eigen::Vector2d::Zero();  ///< [N], [N m]
@@ -75,7 +76,7 @@ private:
 class StaticFriction {
 public:
     StaticFriction(const Model& model, lie::Saddle& K, State& x)
-        : model(model), K(K), x(x), given_loads(x.applied_loads), b(K.size())
+        : model(model), K(K), x(x), near(x.derived), given_loads(x.applied_loads), b(K.size())
     {}
 
     StaticStart solve()
@@ -107,16 +108,16 @@ private:
     /// Lists the springs of bodies at rest. Returns false if there are none.
     bool find()
     {
-        for (std::size_t n = 0; n < model.forces().size(); ++n) {
-            const Force& force = *model.forces()[n];
-            if (force.max_static_springs() == 0) continue;
+        model.for_forces(x, [&](const Force& force, int n) {
+            if (force.max_static_springs() == 0) return;
             read(force);
             for (int k = 0; k < read_springs; ++k)
                 if (is_at_rest(force, springs[static_cast<std::size_t>(k)]))
-                    held.push_back({.force = static_cast<int>(n),
+                    held.push_back({.force = n,
                                     .number = k,
+                                    .of = &force,
                                     .spring = springs[static_cast<std::size_t>(k)]});
-        }
+        });
         return !held.empty();
     }
 
@@ -156,7 +157,7 @@ private:
         for (auto from = held.begin(); from != held.end();) {
             const auto to =
                 std::find_if(from, held.end(), [&](const Held& one) { return one.force != from->force; });
-            const Force& force = *model.forces()[static_cast<std::size_t>(from->force)];
+            const Force& force = *from->of;
             read(force);
             for (auto one = from; one != to; ++one) {
                 const bool is_read = one->number < read_springs;  // not for a contact that has opened
@@ -228,10 +229,9 @@ private:
         for_rows(held, [&](const Held& one, std::size_t k, Eigen::Index at) {
             const Force::SpringRow& row = one.spring.row[k];
             out[at] = row.gamma;
-            for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], row,
-                       [&](int body, const Vec3& r, const Vec3& pi) {
-                           out[at] += r.dot(x.body[body].rddot) + pi.dot(x.body[body].omegadot_bar);
-                       });
+            for_bodies(*one.of, row, [&](int body, const Vec3& r, const Vec3& pi) {
+                out[at] += r.dot(x.body[body].rddot) + pi.dot(x.body[body].omegadot_bar);
+            });
             out[at] *= one.root();
         });
         return out;
@@ -242,20 +242,17 @@ private:
     {
         b.setZero();
         for_rows(held, [&](const Held& one, std::size_t k, Eigen::Index at) {
-            for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], one.spring.row[k],
-                       [&](int body, const Vec3& r, const Vec3& pi) {
-                           b.segment<3>(6 * body) += one.root() * g[at] * r;
-                           b.segment<3>(6 * body + 3) += one.root() * g[at] * pi;
-                       });
+            for_bodies(*one.of, one.spring.row[k], [&](int body, const Vec3& r, const Vec3& pi) {
+                b.segment<3>(6 * body) += one.root() * g[at] * r;
+                b.segment<3>(6 * body + 3) += one.root() * g[at] * pi;
+            });
         });
         K.solve_in_step(b);
         VectorXd out = VectorXd::Zero(g.size());
         for_rows(held, [&](const Held& one, std::size_t k, Eigen::Index at) {
-            for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], one.spring.row[k],
-                       [&](int body, const Vec3& r, const Vec3& pi) {
-                           out[at] += one.root() *
-                                      (r.dot(b.segment<3>(6 * body)) + pi.dot(b.segment<3>(6 * body + 3)));
-                       });
+            for_bodies(*one.of, one.spring.row[k], [&](int body, const Vec3& r, const Vec3& pi) {
+                out[at] += one.root() * (r.dot(b.segment<3>(6 * body)) + pi.dot(b.segment<3>(6 * body + 3)));
+            });
         });
         return out;
     }
@@ -266,10 +263,9 @@ private:
         double largest = 0;
         for_rows(held, [&](const Held& one, std::size_t k, Eigen::Index) {
             double mobility = 0;
-            for_bodies(*model.forces()[static_cast<std::size_t>(one.force)], one.spring.row[k],
-                       [&](int body, const Vec3& r, const Vec3& pi) {
-                           mobility += free_mobility(model.mass(), body, r, pi);
-                       });
+            for_bodies(*one.of, one.spring.row[k], [&](int body, const Vec3& r, const Vec3& pi) {
+                mobility += free_mobility(model.mass(), body, r, pi);
+            });
             largest = std::max(largest, mobility * one.spring.row[k].stiffness);
         });
         return largest;
@@ -344,6 +340,7 @@ private:
     const Model& model;
     lie::Saddle& K;
     State& x;
+    const std::shared_ptr<const lie::DerivedLists> near;  ///< owns the forces of near pairs
     const std::vector<double> given_loads;
     VectorXd b;
     std::vector<Held> held;

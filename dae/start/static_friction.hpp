@@ -18,7 +18,7 @@ using lie::State;
 
 /// A force whose friction cannot hold its bodies at rest
 struct Slipping {
-    int force = 0;                 ///< number in Model::forces()
+    int force = 0;                 ///< number, see Model::for_forces()
     const char* name = "";         ///< of the spring: Force::StaticSpring::name
     double needed = 0, bound = 0;  ///< force or torque that would hold, and its largest value [N, N m]
 };

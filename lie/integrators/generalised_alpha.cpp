@@ -215,15 +215,31 @@ private:
         block(a_next.data(), a_next.size());
         block(&h, 1);
         block(&at.t, 1);
+        for (size_t size : {at.discrete_state.size(), at.internal_state.size()})
+            transfer_integer(size, block);
         transfer(at, block);
+    }
+    /// Gives `saved` the sizes of the states in the history, which a system may change between two steps.
+    void resize_saved()
+    {
+        const Eigen::Index first = a_next.size() + 2;
+        if (x_n.history.size() < first + 2) return;
+        const double discrete = x_n.history[first], internal = x_n.history[first + 1];
+        if (!(discrete >= 0 && internal >= 0 &&
+              discrete + internal <= static_cast<double>(x_n.history.size())))
+            return;
+        saved.discrete_state.resize(static_cast<size_t>(discrete));
+        saved.internal_state.resize(static_cast<size_t>(internal));
     }
     /// Reads a_n. If the factors are not those of the history, renews them.
     void read_history(double h)
     {
         copy(x_n, saved);
+        resize_saved();
         double saved_h = 0;
         lie::read_history(x_n, "rA-genalpha",
                           [&](const auto& block) { transfer_history(saved_h, saved, block); });
+        if (saved.discrete_state != x_n.discrete_state) saved.derived = nullptr;
         a_n = a_next;
         if (saved_h != h) {
             exact->h = 0;

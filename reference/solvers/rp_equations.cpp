@@ -106,6 +106,7 @@ void RpEquations::write(const lie::State& from, VectorRef y, VectorRef ydot)
 {
     x.discrete_state = from.discrete_state;
     x.internal_state = from.internal_state;
+    x.derived = from.derived;
     y.setZero();
     ydot.setZero();
     for (int b = 0; b < bodies; ++b) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/columns/contact_outputs.hpp"
 
+#include "contact/compliant/contact_group.hpp"
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
 #include "run/columns/state_columns.hpp"
@@ -32,41 +33,60 @@ void add_friction(const contact::TrackedForce& force, const contact::TrackedForc
     out.rolling = now.history.deflections.roll_i.slipping || now.history.deflections.roll_j.slipping;
 }
 
-ContactOutput of_force(const contact::ContactForce& force, const lie::State& x)
-{
-    const contact::ContactForce::Instant now = force.at(x);
-    ContactOutput out =
-        geometry(now.contact_state.contact_point, dae::motion(x, force.i), dae::motion(x, force.j));
-    if (!(now.contact_state.N > 0)) return out;
-    out.F_N = now.contact_state.N, out.is_touching = true;
-    add_friction(force, now, x, out);
-    return out;
-}
-
+/// Columns of all contacts. The pairs of groups follow the other contacts.
 class ContactColumns final : public ColumnGroup {
 public:
     explicit ContactColumns(const dae::Model& model)
-        : ColumnGroup(columns_of(ContactOutputs(model))), outputs(model)
-    {}
+        : ColumnGroup(columns_of(names(model))), outputs(model), near(model.near_forces())
+    {
+        if (near.pairs() > ContactOutputs::most_pairs_with_columns) return;
+        for (int n = 0; n < near.numbers(); ++n)
+            if (const auto [group, pair] = near.group_of(n); group->has_pair(pair))
+                pairs.emplace_back(n, std::static_pointer_cast<const contact::ContactForce>(near.force(n)));
+    }
 
     void values(const lie::State& x, double* out) override
     {
-        for (size_t k = 0; k < outputs.contacts.size(); ++k) {
-            const ContactOutput now = outputs.at(k, x);
+        const auto write = [&](const ContactOutput& now) {
             *out++ = now.F_N, *out++ = now.gap;
             for (const Vec3& v : {now.C, now.n, now.F, now.T})
                 for (const double component : v) *out++ = component;
             *out++ = now.slip, *out++ = now.slipping, *out++ = now.rolling;
+        };
+        for (size_t k = 0; k < outputs.contacts.size(); ++k) write(outputs.at(k, x));
+        if (pairs.empty()) return;
+        const auto list = near.list(x);
+        auto next = list->entry.begin();
+        for (const auto& [number, far] : pairs) {
+            while (next != list->entry.end() && next->number < number) ++next;
+            const bool is_near = next != list->entry.end() && next->number == number;
+            write(ContactOutputs::of(is_near ? static_cast<const contact::ContactForce&>(*next->force) : *far,
+                                     x));
         }
     }
 
 private:
-    static std::vector<dae::Quantity> columns_of(const ContactOutputs& outputs)
+    static std::vector<std::string> names(const dae::Model& model)
+    {
+        std::vector<std::string> all;
+        for (const ContactOutputs::Contact& c : ContactOutputs(model).contacts) all.push_back(c.name);
+        const dae::NearForces& near = model.near_forces();
+        if (near.pairs() > ContactOutputs::most_pairs_with_columns) return all;
+        for (int n = 0; n < near.numbers(); ++n)
+            if (const auto [group, pair] = near.group_of(n); group->has_pair(pair)) {
+                const auto [i, j] = group->bodies(pair);
+                all.push_back(contact::ContactPairs::name_of_pair(
+                    model, dynamic_cast<const contact::ContactGroup&>(*group).name, i, j));
+            }
+        return all;
+    }
+
+    static std::vector<dae::Quantity> columns_of(const std::vector<std::string>& names)
     {
         std::vector<dae::Quantity> all;
-        for (const ContactOutputs::Contact& c : outputs.contacts) {
+        for (const std::string& contact : names) {
             const auto add = [&](const char* name, const char* unit, const char* meaning) {
-                all.push_back({c.name + '.' + name, unit, meaning});
+                all.push_back({contact + '.' + name, unit, meaning});
             };
             const auto vector = [&](const std::string& name, const char* unit, const char* meaning) {
                 for (const char* axis : {"x", "y", "z"}) add((name + axis).c_str(), unit, meaning);
@@ -85,6 +105,9 @@ private:
     }
 
     const ContactOutputs outputs;
+    const dae::NearForces& near;
+    /// Numbers of the pairs of groups, and their forces while they are not near
+    std::vector<std::pair<int, std::shared_ptr<const contact::ContactForce>>> pairs;
 };
 
 }  // namespace
@@ -118,10 +141,21 @@ ContactOutputs::ContactOutputs(const dae::Model& model) : model(model)
     }
 }
 
+ContactOutput ContactOutputs::of(const contact::ContactForce& force, const lie::State& x)
+{
+    const contact::ContactForce::Instant now = force.at(x);
+    ContactOutput out =
+        geometry(now.contact_state.contact_point, dae::motion(x, force.i), dae::motion(x, force.j));
+    if (!(now.contact_state.N > 0)) return out;
+    out.F_N = now.contact_state.N, out.is_touching = true;
+    add_friction(force, now, x, out);
+    return out;
+}
+
 ContactOutput ContactOutputs::at(size_t k, const lie::State& x) const
 {
     const Contact& c = contacts[k];
-    if (c.compliant != nullptr && c.compliant->is_active(x)) return of_force(*c.compliant, x);
+    if (c.compliant != nullptr && c.compliant->is_active(x)) return of(*c.compliant, x);
     return of_constraint(c, x);
 }
 

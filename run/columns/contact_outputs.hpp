@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "dae/model.hpp"
 #include "run/columns/contact_rows.hpp"
 
 #include <string>
@@ -24,11 +25,15 @@ struct ContactOutput {
     bool rolling = false;             ///< the rolling spring is at its bound; with ideal rolling always
 };
 
-/// The contacts of a model: compliant contacts, then contact constraints with their friction and fallback.
+/// The contacts of a model: compliant contacts that are not part of a large group, then contact constraints
+/// with their friction and fallback, then the near pairs of large groups.
 /// The model must outlive this object.
 class ContactOutputs {
 public:
     explicit ContactOutputs(const dae::Model& model);
+
+    /// Groups with more pairs in all have no columns in tables.
+    static constexpr long most_pairs_with_columns = 100000;
 
     struct Contact {
         std::string name;
@@ -39,10 +44,21 @@ public:
         const contact::EvolvingContact* constraint = nullptr;
         const contact::EvolvingFriction* friction = nullptr;  ///< of the constraint
     };
-    std::vector<Contact> contacts;
+    std::vector<Contact> contacts;  ///< without those of groups, see near_contacts()
 
     /// Contact k in the state x. lie::NumericalFailure if the contact point is not found.
     ContactOutput at(size_t k, const lie::State& x) const;
+    /// Calls f(number, contact, output) for the contacts of groups whose bodies are close to each other in x.
+    /// The numbers follow those of `contacts`.
+    template <class F>
+    void near_contacts(const lie::State& x, F f) const
+    {
+        model.near_forces().visit(x, [&](const dae::Force& force, int number) {
+            const auto& contact = static_cast<const contact::ContactForce&>(force);
+            f(contacts.size() + static_cast<size_t>(number), contact, of(contact, x));
+        });
+    }
+    static ContactOutput of(const contact::ContactForce& force, const lie::State& x);
 
 private:
     ContactOutput of_constraint(const Contact& c, const lie::State& x) const;

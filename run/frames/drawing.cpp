@@ -53,10 +53,13 @@ const lie::Motion& motion(const std::vector<lie::Motion>& bodies, int body)
 void Drawing::add_surface(int body, const contact::Shape& shape)
 {
     const auto same = [&](const BodySurface& s) {
-        return s.body == body && s.shape.surface == shape.surface && s.shape.position == shape.position &&
+        return s.shape.surface == shape.surface && s.shape.position == shape.position &&
                s.shape.orientation == shape.orientation;
     };
-    if (std::none_of(surfaces.begin(), surfaces.end(), same)) surfaces.push_back({body, shape});
+    std::vector<size_t>& of_body = surfaces_of_body[body];
+    if (std::any_of(of_body.begin(), of_body.end(), [&](size_t k) { return same(surfaces[k]); })) return;
+    of_body.push_back(surfaces.size());
+    surfaces.push_back({body, shape});
 }
 
 void Drawing::add_joint(int body, const Vec3& s_bar)

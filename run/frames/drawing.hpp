@@ -10,6 +10,7 @@
 #include "io/archive.hpp"
 #include "io/json.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,7 @@ private:
     };
 
     std::vector<BodySurface> surfaces;
+    std::map<int, std::vector<size_t>> surfaces_of_body;  ///< their numbers
     std::vector<BodyMesh> solids;
     std::vector<Joint> joints;
     std::vector<Line> lines;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/frames/model_frames.hpp"
 
+#include "contact/compliant/contact_group.hpp"
 #include "dae/constraints/d.hpp"
 #include "dae/model.hpp"
 #include "run/frames/body_drawing.hpp"
@@ -84,6 +85,11 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
         if (body >= 0 && !shape.surface->is_unbounded()) has_surface[body] = true;
     };
     for (const ContactOutputs::Contact& c : contacts.contacts) add(c.i, c.shape_i), add(c.j, c.shape_j);
+    for (const auto& group : model.near_forces().all_groups())
+        if (const auto* of = dynamic_cast<const contact::ContactGroup*>(group.get())) {
+            for (const int b : of->first_bodies()) add(b, of->shape_i);
+            for (const int b : of->second_bodies()) add(b, of->shape_j);
+        }
     const std::vector<std::vector<Vec3>> points = attachments(model, connections, true),
                                          without_links = attachments(model, connections, false);
     for (size_t b = 0; b < has_surface.size(); ++b) {
@@ -126,17 +132,20 @@ void ModelDrawing::add_to(Drawing& drawing) const
 Drawing::Frame ModelDrawing::frame(const lie::State& x) const
 {
     Drawing::Frame frame{.t = x.t, .body = x.body, .contacts = {}};
-    for (size_t k = 0; k < contacts.contacts.size(); ++k) {
-        const ContactOutput now = contacts.at(k, x);
-        if (!now.is_touching) continue;
+    const auto add = [&](size_t k, int i, const ContactOutput& now) {
+        if (!now.is_touching) return;
         frame.contacts.push_back({.contact = static_cast<int>(k),
-                                  .i = contacts.contacts[k].i,
+                                  .i = i,
                                   .C = now.C,
                                   .N = now.F_N * now.n,
                                   .F = now.F,
                                   .slipping = now.slipping,
                                   .rolling = now.rolling});
-    }
+    };
+    for (size_t k = 0; k < contacts.contacts.size(); ++k) add(k, contacts.contacts[k].i, contacts.at(k, x));
+    contacts.near_contacts(x, [&](size_t k, const contact::ContactForce& contact, const ContactOutput& now) {
+        add(k, contact.i, now);
+    });
     return frame;
 }
 

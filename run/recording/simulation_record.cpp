@@ -55,8 +55,7 @@ void check_fits(const SimulationRecord& r, const dae::Model& model, const lie::S
     };
     const auto same_lengths = [&](const lie::State& a) {
         return a.body.size() == x.body.size() && a.alpha.size() == x.alpha.size() &&
-               a.lambda.size() == x.lambda.size() && a.discrete_state.size() == x.discrete_state.size() &&
-               a.internal_state.size() == x.internal_state.size() &&
+               a.lambda.size() == x.lambda.size() && model.fits(a) &&
                (a.applied_loads.empty() || a.applied_loads.size() == 6 * a.body.size());
     };
     const size_t constraints = model.general_constraints().size();
@@ -69,8 +68,8 @@ void check_fits(const SimulationRecord& r, const dae::Model& model, const lie::S
     const auto in = [](const Extreme& e, size_t count) {
         return e.place >= -1 && e.place < static_cast<long>(count);
     };
-    check(in(r.watch.turn, x.body.size()) && in(r.watch.overlap, model.forces().size()) &&
-              in(r.watch.unstable, model.forces().size()) &&
+    const size_t forces = model.forces().size() + static_cast<size_t>(model.near_forces().numbers());
+    check(in(r.watch.turn, x.body.size()) && in(r.watch.overlap, forces) && in(r.watch.unstable, forces) &&
               static_cast<long>(r.watch.deepest.size()) == compliant,
           "unknown body or force");
     for (const contact::ContactEvent& e : r.contacts.events)

@@ -45,6 +45,8 @@ EnergyBalance::EnergyBalance(const dae::Model& model, const lie::State& x, doubl
         dissipates = dissipates || force->is_dissipative();
         if (force->internal_states() > 0) with_internal_energy.push_back(force.get());
     }
+    for (const auto& group : model.near_forces().all_groups())
+        dissipates = dissipates || group->example().is_dissipative();
     dissipates = dissipates || !pairs.empty() ||
                  std::any_of(model.general_constraints().begin(), model.general_constraints().end(),
                              [](const auto& c) { return c->may_be_inactive(); });
@@ -90,6 +92,7 @@ double EnergyBalance::internal_energy(const lie::State& x)
 {
     double sum = 0;
     for (const dae::Force* force : with_internal_energy) sum += force->internal_energy(x);
+    model.near_forces().visit(x, [&](const dae::Force& force, int) { sum += force.internal_energy(x); });
     if (!pairs.empty()) {
         model.update_pairs(x, pairs);
         for (const lie::BoundedPair& pair : pairs) sum += 0.5 * pair.K * pair.S.squaredNorm();

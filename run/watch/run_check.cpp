@@ -94,10 +94,15 @@ std::string check_run(const dae::Model& model, const lie::State& start, const li
                     : fmt::format(
                           "run: {} does not take loads with a history; {} has internal state variables",
                           scheme.name, force->label()));
+    if (!scheme.supports.contains(lie::Feature::history) && !model.near_forces().empty())
+        throw io::UsageError(
+            fmt::format("run: {} does not take loads with a history; {} has internal state variables",
+                        scheme.name, model.near_forces().all_groups()[0]->example().label()));
     if (scheme.adaptive) return "";
     const dae::Model::StableStep stable = model.stable_step(start, scheme);
     if (grid.h <= stable.h) return "";
-    const dae::Force& force = *model.forces()[static_cast<size_t>(stable.force)];
+    const auto of_limit = model.force_of(stable.force);
+    const dae::Force& force = *of_limit;
     std::string what =
         fmt::format("the step {} s is above {} s, the stability limit of {} in an explicit step", grid.h,
                     rounded_down(stable.h), force.label());

@@ -58,7 +58,7 @@ void Watch::accepted(const lie::State& x, long n, int)
             stop("ill_conditioned", condition_finding().text);
     }
     const bool periodic = n % interval == 0;
-    if (!compliant.empty()) check_contacts(x, n % contacts == 0);
+    if (!compliant.empty() || !model.near_forces().empty()) check_contacts(x, n % contacts == 0);
     if (periodic)
         for (const int k : with_limit) check_stability(k, x);
     energy.add_work(x);
@@ -70,30 +70,49 @@ void Watch::accepted(const lie::State& x, long n, int)
 
 void Watch::check_stability(int k, const lie::State& x)
 {
+    check_stability(*model.forces()[static_cast<size_t>(k)], k, x);
+}
+
+void Watch::check_stability(const dae::Force& force, int number, const lie::State& x)
+{
     if (values.unstable.place >= 0 || scheme.adaptive) return;
-    const auto number = static_cast<size_t>(k);
     if (touching.empty()) model.count_contacts(x, dae::Force::Counted::touching, touching);
-    if (model.forces()[number]->is_stable_with(x, 2 / scheme.stability * grid.h, scheme.loads, touching))
-        return;
-    values.unstable.include(1, x.t, number);
+    if (force.is_stable_with(x, 2 / scheme.stability * grid.h, scheme.loads, touching)) return;
+    values.unstable.include(1, x.t, static_cast<size_t>(number));
     if (action == Action::strict || (action == Action::stop && values.ignore_stability == 0))
         stop("unstable_step", stability_finding().text);
 }
 
 void Watch::check_contacts(const lie::State& x, bool all)
 {
-    for (size_t c = 0; c < compliant.size(); ++c) {
-        const auto& [contact, k] = compliant[c];
-        const double overlap = contact->overlap(x);
-        if (overlap == 0 || (overlap <= values.deepest[c] && !all)) continue;
-        values.deepest[c] = std::max(values.deepest[c], overlap);
-        values.overlap.include(contact->relative_overlap(x), x.t, static_cast<size_t>(k));
-        check_stability(k, x);
-    }
+    const auto check = [&](const contact::ContactForce& contact, int number, double& deepest) {
+        const double overlap = contact.overlap(x);
+        if (overlap == 0 || (overlap <= deepest && !all)) return;
+        deepest = std::max(deepest, overlap);
+        values.overlap.include(contact.relative_overlap(x), x.t, static_cast<size_t>(number));
+        check_stability(contact, number, x);
+    };
+    for (size_t c = 0; c < compliant.size(); ++c)
+        check(*compliant[c].first, compliant[c].second, values.deepest[c]);
+    // The deepest overlaps of near pairs are those of their places in the state. A pair that returns is
+    // checked again.
+    const auto others = static_cast<int>(model.forces().size());
+    model.near_forces().visit(x, [&](const dae::Force& force, int number) {
+        const auto place = static_cast<size_t>(model.near_forces().place(force));
+        if (place >= values.near_deepest.size()) values.near_deepest.resize(2 * place + 1);
+        DeepestOverlap& deepest = values.near_deepest[place];
+        if (deepest.number != number) deepest = {.number = number, .overlap = 0};
+        check(static_cast<const contact::ContactForce&>(force), others + number, deepest.overlap);
+    });
     if (action == Action::record) return;
     if (values.overlap.value > limits.overlap_end) stop("overlap_too_large", overlap_finding().text);
     if (action == Action::strict && values.overlap.value > limits.overlap)
         stop("large_overlap", overlap_finding().text);
+}
+
+std::string Watch::label_of(const Extreme& e) const
+{
+    return model.force_of(static_cast<int>(e.place))->label();
 }
 
 bool Watch::energy_rises() const
@@ -143,8 +162,7 @@ Finding Watch::overlap_finding() const
     return {"large_overlap",
             fmt::format("{}: the surfaces overlap by {:.3g} of their radius at t = {:.6g} s; laws of small "
                         "deformation hold up to about {:g}",
-                        model.forces()[static_cast<size_t>(values.overlap.place)]->label(),
-                        values.overlap.value, values.overlap.t, limits.overlap)};
+                        label_of(values.overlap), values.overlap.value, values.overlap.t, limits.overlap)};
 }
 
 Finding Watch::condition_finding() const
@@ -161,8 +179,7 @@ Finding Watch::stability_finding() const
         "unstable_step",
         fmt::format("the step {:g} s is above the stability limit of {} at t = {:.6g} s; reduce the step, or "
                     "accept it with --accept-step",
-                    grid.h, model.forces()[static_cast<size_t>(values.unstable.place)]->label(),
-                    values.unstable.t)};
+                    grid.h, label_of(values.unstable), values.unstable.t)};
 }
 
 Finding Watch::energy_finding() const
@@ -174,8 +191,7 @@ Finding Watch::energy_finding() const
     if (scheme.energy_drifts)
         text += fmt::format("; the energy of {} drifts with an error of order {}", scheme.name, scheme.order);
     if (values.unstable.place >= 0)
-        text += fmt::format("; the step is above the stability limit of {}",
-                            model.forces()[static_cast<size_t>(values.unstable.place)]->label());
+        text += fmt::format("; the step is above the stability limit of {}", label_of(values.unstable));
     return {"energy_rises", text + (scheme.adaptive ? "; reduce --rtol" : "; reduce the step")};
 }
 
@@ -207,9 +223,7 @@ io::Json Watch::json() const
     const auto place = [&](const Extreme& e, const std::string& name) {
         return e.place < 0 ? io::Json() : io::Json{{"value", e.value}, {"t", e.t}, {"of", name}};
     };
-    const auto force = [&](const Extreme& e) {
-        return e.place < 0 ? std::string() : model.forces()[static_cast<size_t>(e.place)]->label();
-    };
+    const auto force = [&](const Extreme& e) { return e.place < 0 ? std::string() : label_of(e); };
     const EnergyRecord& r = energy.record;
     return {{"largest_turn", place(values.turn, values.turn.place < 0
                                                     ? std::string()
@@ -236,7 +250,8 @@ io::Json Watch::json() const
 void transfer(io::Archive& a, WatchRecord& r)
 {
     a.value(r.turn), a.value(r.overlap), a.value(r.unstable), a.value(r.ignore_stability);
-    a.value(r.condition), a.value(r.condition_t), a.value(r.energy), a.list(r.deepest);
+    a.value(r.condition), a.value(r.condition_t), a.value(r.energy), a.list(r.deepest),
+        a.list(r.near_deepest);
 }
 
 WatchRecord Watch::record() const

@@ -32,6 +32,12 @@ struct Extreme {
     }
 };
 
+/// Largest overlap of a pair of a group of contacts
+struct DeepestOverlap {
+    long number = -1;    ///< of the pair, see dae::NearForces
+    double overlap = 0;  ///< [m]
+};
+
 /// What the checks need of the past of a run; part of checkpoints
 struct WatchRecord {
     Extreme turn;               ///< |ω| h [rad] of a body
@@ -41,7 +47,8 @@ struct WatchRecord {
     double condition = 1;       ///< smallest reciprocal condition of a matrix of the scheme
     double condition_t = 0;     ///< its time [s]
     EnergyRecord energy;
-    std::vector<double> deepest = {};  ///< largest overlap of each compliant contact [m]
+    std::vector<double> deepest = {};               ///< largest overlap of each compliant contact [m]
+    std::vector<DeepestOverlap> near_deepest = {};  ///< of the near pairs, by their places in the state
 };
 /// Writes or reads the record.
 void transfer(io::Archive& a, WatchRecord& record);
@@ -100,6 +107,8 @@ public:
 private:
     [[noreturn]] void stop(const std::string& status, const std::string& text) const;
     void check_stability(int force, const lie::State& x);
+    void check_stability(const dae::Force& force, int number, const lie::State& x);
+    std::string label_of(const Extreme& e) const;  ///< of the force of its place
     void check_contacts(const lie::State& x, bool all);
     void check_energy() const;
     /// Whether a model without dissipation loses energy

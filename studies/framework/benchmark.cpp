@@ -90,8 +90,7 @@ void check_stable(const std::string& kind, const Benchmark& c, const std::vector
             throw io::UsageError(
                 fmt::format("study {}: {}: the step {} s is above {:.3g} s, the stability limit of {} "
                             "in an explicit step; --steps sets others",
-                            kind, c.problem.name, h, stable.h,
-                            model.forces()[static_cast<size_t>(stable.force)]->label()));
+                            kind, c.problem.name, h, stable.h, model.force_of(stable.force)->label()));
 }
 
 }  // namespace

@@ -24,26 +24,23 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
         return {"rA-rkmk-4",
                 "no degrees of freedom: positions, velocities and constraint forces are exact at every step"};
 
-    const auto force_of = [&](const dae::Model::StableStep& limit) -> const dae::Force& {
-        return *model.forces()[static_cast<size_t>(limit.force)];
-    };
     const dae::Model::StableStep limit = model.stable_step(x, lie::scheme(run::default_integrator)),
                                  contacts = model.stable_step(x, LoadEvaluation::implicit);
     // Implicit integrators remove the limits of springs, and not those of contacts.
-    const bool stiff =
-        limit.h < run::default_step && std::isinf(force_of(limit).stable_step(x, LoadEvaluation::implicit));
+    const bool stiff = limit.h < run::default_step &&
+                       std::isinf(model.force_of(limit.force)->stable_step(x, LoadEvaluation::implicit));
     if (stiff && model.keep_redundant)
         return {
             "rA-full-1-exact",
             fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rA-full-1-exact is "
                         "implicit and takes redundant rows",
-                        force_of(limit).label(), limit.h)};
+                        model.force_of(limit.force)->label(), limit.h)};
     if (stiff)
         return {"rp-bdf2",
                 fmt::format("stiff: {} limits the step of explicit integrators to {:.2g} s; rp-bdf2 "
                             "and ida-rp are implicit{}",
-                            force_of(limit).label(), limit.h,
-                            force_of(limit).may_be_implicit()
+                            model.force_of(limit.force)->label(), limit.h,
+                            model.force_of(limit.force)->may_be_implicit()
                                 ? fmt::format(", and {} has no limit for a force with \"implicit\": true",
                                               run::default_integrator)
                                 : "")};
@@ -52,7 +49,7 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
             run::default_integrator,
             fmt::format("compliant contacts: second order between their events; steps up to {:.2g} s, the "
                         "limit of {}",
-                        limit.h, force_of(limit).label())};
+                        limit.h, model.force_of(limit.force)->label())};
     return {
         run::default_integrator,
         "smooth motion: second order in positions, velocities and constraint forces, no drift of the energy"};

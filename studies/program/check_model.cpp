@@ -101,16 +101,16 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
 {
     std::vector<CompliantContactInfo> all;
     const StableSteps stable_steps(model, x);
-    for (const auto& force : model.forces()) {
-        const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
-        if (contact == nullptr || contact->normal_constraint() != nullptr) continue;
+    model.for_forces(x, [&](const dae::Force& force, int) {
+        const auto* contact = dynamic_cast<const contact::ContactForce*>(&force);
+        if (contact == nullptr || contact->normal_constraint() != nullptr) return;
         const contact::ContactState m = contact->at(x).contact_state;
         all.push_back({.name = contact->name,
                        .gap = m.contact_point.gap,
                        .N = std::max(0., m.N),
                        .curvature = 0.5 * (m.contact_point.K_i + m.contact_point.K_j).trace(),
                        .stable_step = stable_steps.of(*contact)});
-    }
+    });
     return all;
 }
 
@@ -312,6 +312,11 @@ int check_model(const run::CheckOptions& options)
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
     const std::vector<ContactConstraintInfo> constrained = contact_constraints(model, d.x);
+    const long pairs = model.near_forces().pairs();  // of groups
+    const auto single = std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
+        const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
+        return contact != nullptr && contact->normal_constraint() == nullptr;
+    });
     const run::RowsOfGeneralConstraints general = run::rows_of_general_constraints(model, d.x);
     const int constraints = model.constraints() + general.others, rows = start.rows + general.of_others;
     double condition = std::nan("");
@@ -333,6 +338,7 @@ int check_model(const run::CheckOptions& options)
             {"constraints", constraints},
             {"forces", other_forces},
             {"contacts", io::Json::array()},
+            {"contact_pairs", static_cast<long>(single) + pairs},
             {"evolving_contacts", io::Json::array()},
             {"rows", rows},
             {"rank", start.rank},
@@ -392,7 +398,11 @@ int check_model(const run::CheckOptions& options)
         parameters += (parameters.empty() ? "" : ", ") + equation;
     }
     if (!parameters.empty()) line(label, parameters);
-    if (!compliant.empty()) line("contacts", std::to_string(compliant.size()));
+    if (!compliant.empty() || pairs > 0)
+        line("contacts",
+             pairs > 0 ? fmt::format("{} of {} listed, the pairs of groups that are close to each other",
+                                     compliant.size(), single + pairs)
+                       : std::to_string(compliant.size()));
     if (!constrained.empty()) {
         line("contact constraints", fmt::format("{}, of rank {}", constrained.size(), general.of_contacts));
         for (const ContactConstraintInfo& c : constrained) {

@@ -26,7 +26,7 @@ struct BristleContacts {
 
     /// Default of `stiffness` [N/m]: the mass of body i in kg times 1 N/(m kg). Default of `most` [m]: a
     /// tenth of the distance of the bodies at the start.
-    static void read(dae::ObjectReader& o, const contact::ContactPair& pair)
+    static bool read(dae::ObjectReader& o, const contact::ContactPair& pair)
     {
         const auto r = [&](int b) { return b == dae::ground ? lie::Vec3(0, 0, 0) : pair.start.body[b].r; };
         const double mass = pair.i == dae::ground ? 1 : pair.model.mass().m[pair.i];
@@ -36,6 +36,7 @@ struct BristleContacts {
         auto bristle = std::make_unique<Bristle>(pair.i, pair.j, stiffness, max_stretch);
         bristle->name = pair.name;
         pair.model.load(std::move(bristle));
+        return false;
     }
 };
 

@@ -3,6 +3,7 @@
 #include "dae/model.hpp"
 
 #include "dae/constraints/dp1.hpp"
+#include "dae/outputs/turn_counter.hpp"
 #include "dae/tree.hpp"
 
 #include <algorithm>
@@ -124,6 +125,13 @@ std::shared_ptr<const Force> Model::force_of(int number) const
     return {std::shared_ptr<const Force>(), force[static_cast<size_t>(number)].get()};
 }
 
+void Model::count(std::shared_ptr<TurnCounter> angle)
+{
+    if (angle->last_body() >= static_cast<int>(body.size()))
+        lie::reject(angle->label(), "no body has this number", angle->last_body());
+    counters.push_back(std::move(angle));
+}
+
 std::span<const int> Model::forces_on(int b) const
 {
     if (b == ground || b >= static_cast<int>(forces_on_body.size())) return {};
@@ -209,6 +217,10 @@ void Model::prepare(State& x)
         f->first_internal_state = internal_states;
         internal_states += f->internal_states();
     }
+    for (const auto& angle : counters) {
+        angle->first_discrete_state = discrete_states;
+        discrete_states += angle->discrete_states();
+    }
     x.discrete_state.resize(discrete_states, 0);
     near.set_layout(bodies(), discrete_states, internal_states);
     x.derived = nullptr;
@@ -221,6 +233,7 @@ void Model::set_internal_state_at_start(State& x) const
 {
     for (const auto& f : force)
         std::fill_n(x.discrete_state.begin() + f->first_discrete_state, f->discrete_states(), 0);
+    for (const auto& angle : counters) x.discrete_state[angle->first_discrete_state] = 0;
     if (near.empty()) {
         x.internal_state.assign(internal_states, 0);
     } else {

@@ -18,6 +18,7 @@
 namespace hilda::dae {
 
 class FunctionOfTime;
+class TurnCounter;
 
 /// Invalid input of one constraint. what() gives the name of the row and of its bodies.
 class ConstraintError : public lie::InvalidInput {
@@ -126,6 +127,8 @@ public:
     }
     /// The force with a number of for_forces(). That of a pair has the states of a pair that is not near.
     std::shared_ptr<const Force> force_of(int number) const;
+    /// Adds an angle whose turns the state counts. It is not one of the forces.
+    void count(std::shared_ptr<TurnCounter> angle);
     /// Indices of the forces that have this body among their bodies(), ascending
     std::span<const int> forces_on(int body) const;
 
@@ -245,7 +248,7 @@ public:
     void set_tree(const State& x);
     double potential_energy(const State& x) const override;
     /// Replaces DP1 drivers near |f| = |a_i||a_j| by their complement, with the multiplier that gives the
-    /// same torque, and updates the internal states of forces and general constraints.
+    /// same torque, and updates the internal states of forces, general constraints and counted angles.
     void accepted(const State& before, State& after) const override;
     /// Whether a force or a contact has internal states
     bool internal_states_are_history() const override;
@@ -282,6 +285,7 @@ private:
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;
     NearForces near;
+    std::vector<std::shared_ptr<TurnCounter>> counters;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state
     int switching_functions = 0;                   ///< of all forces
     bool block_counts_turns = false;

@@ -5,6 +5,7 @@
 #include "dae/driver.hpp"
 #include "dae/function_of_time.hpp"
 #include "dae/model.hpp"
+#include "dae/outputs/turn_counter.hpp"
 #include "dae/start/differences.hpp"
 #include "lie/steps/state_numbers.hpp"
 
@@ -408,6 +409,7 @@ void Model::accepted(const State& before, State& after) const
     swap_drivers(after);
     update_constraint_states(after, false);
     for_forces(after, [&](const Force& f, int) { f.update_internal_state(after); });
+    for (const auto& angle : counters) angle->count(before, after);
 }
 
 void Model::update_constraint_states(State& x, bool start) const

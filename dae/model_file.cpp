@@ -4,6 +4,7 @@
 
 #include "dae/body_reader.hpp"
 #include "dae/model_types.hpp"
+#include "dae/outputs/turn_counter.hpp"
 #include "dae/parameters.hpp"
 #include "io/expression.hpp"
 #include "io/nearest.hpp"
@@ -399,6 +400,7 @@ private:
         if (output->place.empty()) output->place = o.place();
         output->name_place = o.place("name");
         Json recorded = o.finish();
+        if (std::shared_ptr<TurnCounter> angle = output->turns()) model.count(std::move(angle));
         out.outputs.push_back(std::move(output));
         return recorded;
     }

@@ -35,9 +35,18 @@ HingeForce::HingeForce(const char* type, int i, const Vec3& axis_i, int j, const
 
 double HingeForce::angle(const State& x) const
 {
+    return nearest_angle(x, x.discrete_state[first_discrete_state] * (pi / 2));
+}
+
+double HingeForce::nearest_angle(const State& x, double theta) const
+{
     const Vec3 u_j = motion(x, i).A.transpose() * (motion(x, j).A * u_bar_j);
-    const double saved_angle = x.discrete_state[first_discrete_state] * (pi / 2);
-    return nearest_revolution(std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j)), saved_angle);
+    return nearest_revolution(std::atan2(v_bar_i.dot(u_j), u_bar_i.dot(u_j)), theta);
+}
+
+void HingeForce::store(double theta, State& x) const
+{
+    x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(theta / (pi / 2)));
 }
 
 double HingeForce::rate(const State& x) const
@@ -59,10 +68,7 @@ void HingeForce::values(const State& x, double* out) const
     out[0] = angle(x), out[1] = rate(x), out[2] = torque(out[0], out[1]);
 }
 
-void HingeForce::update_internal_state(State& x) const
-{
-    x.discrete_state[first_discrete_state] = static_cast<int>(std::lround(angle(x) / (pi / 2)));
-}
+void HingeForce::update_internal_state(State& x) const { store(angle(x), x); }
 
 void HingeForce::check_step(const State& before, const State& after) const
 {

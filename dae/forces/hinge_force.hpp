@@ -57,6 +57,12 @@ public:
     double angle(const State& x) const;
     /// thetadot [rad/s]
     double rate(const State& x) const;
+
+protected:
+    /// Of the angles that differ by whole revolutions, the one nearest to `theta` [rad]
+    double nearest_angle(const State& x, double theta) const;
+    /// Stores theta in x as the nearest number of quarter revolutions.
+    void store(double theta, State& x) const;
 };
 
 }  // namespace hilda::dae

@@ -14,7 +14,7 @@ public:
     ExpressionOutput(std::string text, std::string unit) : text(std::move(text)), unit(std::move(unit)) {}
 
     std::vector<Quantity> quantities() const override { return {{"", unit, text}}; }
-    void values(const State&, const double*, double*) const override {}
+    void values(const State&, double*) const override {}
     std::string expression() const override { return text; }
 
 private:

@@ -20,7 +20,7 @@ public:
                 {"rate", "m/s", "rate of the distance; 0 while the points coincide"}};
     }
 
-    void values(const State& x, const double*, double* out) const override
+    void values(const State& x, double* out) const override
     {
         const Motion &bi = motion(x, i), &bj = motion(x, j);
         const Vec3 s_i = bi.A * s_bar_i, s_j = bj.A * s_bar_j;

@@ -12,11 +12,12 @@
 
 namespace hilda::dae {
 
+class TurnCounter;
+
 /// One or more scalar quantities of the state, such as the motion of a point. Derive from Output to add a
 /// type.
 ///
-/// An output is constant during a run. What it has to remember from node to node, such as the revolutions of
-/// an angle, is an array of numbers that the caller keeps.
+/// An output is constant during a run. Everything that changes is in the state.
 class Output {
 public:
     virtual ~Output() = default;
@@ -24,12 +25,10 @@ public:
     /// The quantities that values() computes. A quantity without a name has the name of the output alone.
     virtual std::vector<Quantity> quantities() const = 0;
     /// The quantities in the state x: quantities().size() numbers. The function must not allocate memory.
-    virtual void values(const State& x, const double* saved, double* out) const = 0;
+    virtual void values(const State& x, double* out) const = 0;
 
-    /// Number of the saved numbers. They are zero before the first node.
-    virtual int saved_numbers() const { return 0; }
-    /// Updates the saved numbers. Called once at each node, in order, before values().
-    virtual void update(const State& /*x*/, double* /*saved*/) const {}
+    /// The angle whose turns the state counts for this output, for Model::count(); nullptr: none
+    virtual std::shared_ptr<TurnCounter> turns() const { return {}; }
 
     /// The text of an expression in the columns of the run, which the output is; empty for other types.
     /// values() is not called for an expression.

@@ -34,7 +34,7 @@ public:
         return all;
     }
 
-    void values(const State& x, const double*, double* out) const override
+    void values(const State& x, double* out) const override
     {
         const Motion &b = motion(x, body), &k = motion(x, observer);
         const Vec3 &w = b.omega_bar, &w_k = k.omega_bar;

@@ -49,7 +49,6 @@ public:
     {
         const double residual = model.largest_residual(x).value;
         if (!(residual <= constraint_norm)) constraint_norm = residual;
-        if (observed && n > last_node) observed->node(x), last_node = n;
         if (grid.is_row(n) && n > last) write(x), last = n;
         dae::check_dropped_rows(model, x);
     }
@@ -111,7 +110,7 @@ private:
     std::optional<run::ObservedColumns> observed;
     double *t, *energy, *A, *lambda, *F = nullptr, *T = nullptr, *values = nullptr;
     size_t rows = 0;
-    long last = -1, last_node = -1;
+    long last = -1;
 };
 
 /// Calls a Python function with each node. The run ends if it returns True.

@@ -125,7 +125,7 @@ public:
         const bool continues = has_last && is_last(x);
         has_last = false;  // set again at the end, unless an exception is thrown
         nonfinite.clear();
-        if (!continues) start(x, t_end);
+        if (!continues) start(x, t_end), counted = internal;
         double t_checked = t;
         for (long n = 1; t < t_end; ++n) {
             if (stop != nullptr && stop()) throw lie::Interrupted();
@@ -146,7 +146,7 @@ public:
             equations.read(t_end, map(at_node.get()), last);
         }
         last.discrete_state = internal.discrete_state, last.internal_state = internal.internal_state;
-        const lie::State& now = updated_internal_state(last);
+        const lie::State& now = updated_internal_state(counted, last);
         last.discrete_state = now.discrete_state, last.internal_state = now.internal_state;
         lie::solve_accelerations(system, K, last);
         has_last = true;
@@ -192,16 +192,16 @@ private:
         return true;
     }
 
-    /// x projected onto the constraints, with updated internal states. A copy of x if there are none.
-    const lie::State& updated_internal_state(const lie::State& x)
+    /// x projected onto the constraints, with the discrete and internal states updated from those of `from`,
+    /// the state of their last update. A copy of x if there are none.
+    const lie::State& updated_internal_state(const lie::State& from, const lie::State& x)
     {
         updated = x;
         if (x.discrete_state.empty() && x.internal_state.empty()) return updated;
         lie::project_positions(system, K, updated);
         lie::project_velocities(system, K, updated);
         if (updated.lambda.size() != system.rows()) updated.lambda.setZero(system.rows());
-        const lie::State before = updated;
-        system.accepted(before, updated);
+        system.accepted(from, updated);
         return updated;
     }
 
@@ -402,11 +402,13 @@ private:
     {
         if (internal.discrete_state.empty() && internal.internal_state.empty()) return;
         equations.read(t, map(y.get()), internal);
-        const lie::State& now = updated_internal_state(internal);
+        const lie::State& now = updated_internal_state(counted, internal);
         equations.set_internal_state(now.internal_state);
         internal.internal_state = now.internal_state;
-        if (now.discrete_state == internal.discrete_state) return;
-        internal = now;
+        const bool changes = now.discrete_state != internal.discrete_state;
+        if (changes) internal = now;
+        counted = internal;
+        if (!changes) return;
         to_restart = !equations.set_discrete_state(internal.discrete_state, t, map(y.get()), map(ydot.get()));
     }
 
@@ -530,6 +532,7 @@ private:
     bool has_last = false;  // whether `last` is valid
     lie::State
         internal;  // state at the end of the last internal step; updated only if there are discrete states
+    lie::State counted;        // state of the last update of discrete and internal states
     lie::State before, after;  // the ends of the last internal step, if it is followed
     double at_break = 0;       // break point of time at the end of the next step; 0: none
     double last_length = 0;    // of the last internal step [s]

@@ -17,7 +17,6 @@ namespace hilda::run {
 struct OutputColumns::Part {
     const dae::Output* output;
     size_t count;  ///< of the columns
-    std::vector<double> saved;
     std::optional<io::Expression> expression;
 };
 
@@ -108,10 +107,7 @@ OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const da
     first_output = names.size();
     std::unordered_set<std::string> known(names.begin(), names.end());
     for (const dae::Output* output : outputs) {
-        Part part{.output = output,
-                  .count = output->quantities().size(),
-                  .saved = std::vector<double>(output->saved_numbers()),
-                  .expression = {}};
+        Part part{.output = output, .count = output->quantities().size(), .expression = {}};
         if (const std::string text = output->expression(); !text.empty()) try {
                 part.expression.emplace(text, names);
             } catch (const io::ExpressionError& e) {
@@ -134,11 +130,6 @@ OutputColumns::OutputColumns(const dae::Model& model, const std::vector<const da
 
 OutputColumns::~OutputColumns() = default;
 
-void OutputColumns::node(const lie::State& x)
-{
-    for (Part& part : parts) part.output->update(x, part.saved.data());
-}
-
 /// Computes the variables of the expressions, and the first outputs.
 void OutputColumns::evaluate(const lie::State& x, size_t count)
 {
@@ -151,7 +142,7 @@ void OutputColumns::evaluate(const lie::State& x, size_t count)
         if (part.expression)
             *at = part.expression->value({variable.data(), static_cast<size_t>(at - variable.data())});
         else
-            part.output->values(x, part.saved.data(), at);
+            part.output->values(x, at);
         at += part.count;
     }
 }
@@ -166,12 +157,6 @@ void OutputColumns::values(const lie::State& x, double* out)
 {
     evaluate(x, parts.size());
     std::copy(variable.begin() + static_cast<std::ptrdiff_t>(first_output), variable.end(), out);
-}
-
-void OutputColumns::transfer(io::Archive& a)
-{
-    for (Part& part : parts)
-        for (double& number : part.saved) a.value(number);
 }
 
 ObservedColumns::ObservedColumns(const dae::Model& model,
@@ -203,11 +188,6 @@ ObservedColumns::ObservedColumns(const dae::Model& model,
         }
         places.push_back({number[place.group], place.index});
     }
-}
-
-void ObservedColumns::node(const lie::State& x)
-{
-    for (const auto& group : groups) group->node(x);
 }
 
 void ObservedColumns::values(const lie::State& x, double* out)

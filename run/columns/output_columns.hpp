@@ -21,15 +21,13 @@ public:
     OutputColumns(const dae::Model& model, const std::vector<const dae::Output*>& outputs);
     ~OutputColumns() override;
 
-    void node(const lie::State& x) override;
     void values(const lie::State& x, double* out) override;
     /// The value of expression k of the list, which uses the first `count` outputs of the list only
     double expression(const lie::State& x, size_t k, size_t count);
-    void transfer(io::Archive& a) override;
 
 private:
     void evaluate(const lie::State& x, size_t count);
-    struct Part;  ///< an output with its saved numbers or its compiled expression
+    struct Part;  ///< an output with its compiled expression
 
     /// A group of columns that are variables of expressions
     struct Source {
@@ -51,8 +49,6 @@ public:
     ObservedColumns(const dae::Model& model, const std::vector<std::unique_ptr<dae::Output>>& outputs,
                     const std::string& option, const std::vector<std::string>& names);
 
-    /// To be called at each node of a run, in order and before values().
-    void node(const lie::State& x);
     /// Their values in the state x
     void values(const lie::State& x, double* out);
     const dae::Quantity& column(size_t k) const { return groups[places[k].group]->columns[places[k].index]; }
@@ -75,11 +71,10 @@ public:
         : columns(model, outputs, option, {name})
     {}
 
-    /// The value in the state x. To be called at each node of a run, in order.
+    /// The value in the state x
     double at(const lie::State& x)
     {
         double value = 0;
-        columns.node(x);
         columns.values(x, &value);
         return value;
     }

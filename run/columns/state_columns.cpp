@@ -93,12 +93,6 @@ ColumnsSink::ColumnsSink(const RunSetup& run, const std::string& name, std::uniq
     : TableSink(run, name), warn(run.warn), group(std::move(group))
 {}
 
-void ColumnsSink::transfer(io::Archive& a)
-{
-    TableSink::transfer(a);
-    group->transfer(a);
-}
-
 std::vector<TableColumn> ColumnsSink::columns() const
 {
     std::vector<TableColumn> all = {time_column};
@@ -108,7 +102,6 @@ std::vector<TableColumn> ColumnsSink::columns() const
 
 void ColumnsSink::append(std::vector<double>& row, const RunNode& node)
 {
-    group->node(node.x);
     if (!node.is_row) return;
     row.resize(1 + group->columns.size());
     row[0] = node.x.t;

@@ -18,10 +18,6 @@ public:
     explicit ColumnGroup(std::vector<dae::Quantity> columns) : columns(std::move(columns)) {}
     virtual ~ColumnGroup() = default;
 
-    /// Takes every node of the run, in order and before values().
-    virtual void node(const lie::State& /*x*/) {}
-    /// Writes what a resumed run needs to the archive, or reads it.
-    virtual void transfer(io::Archive&) {}
     /// The values of all columns. The function does not allocate memory.
     virtual void values(const lie::State& x, double* out) = 0;
 
@@ -41,8 +37,6 @@ class ColumnsSink final : public TableSink {
 public:
     /// name: of the table, such as "outputs"
     ColumnsSink(const RunSetup& run, const std::string& name, std::unique_ptr<ColumnGroup> group);
-
-    void transfer(io::Archive& a) override;
 
 private:
     std::vector<TableColumn> columns() const override;

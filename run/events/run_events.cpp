@@ -98,13 +98,11 @@ void RunEvents::transfer(io::Archive& a)
     a.check(search.saved.sign.size() == counted.size() && search.saved.undefined.size() == counted.size(),
             "wrong number of events");
     for (EventCount& event : counted) a.value(event.count), a.value(event.last);
-    formulas.transfer(a);
     table->transfer(a);
 }
 
 void RunEvents::accepted(const lie::State& node, long, int)
 {
-    formulas.node(node);
     if (search.node(node, [this](const lie::EventFound& found) { add_row(found); }))
         throw StoppedByEvent{counted[search.stopping()].name, search.stopped()};
 }

@@ -33,7 +33,6 @@ public:
         if (n < static_cast<long>(t.size())) return;  // passed before
         t.push_back(x.t);
         values.resize(values.size() + number);
-        columns.node(x);
         columns.values(x, values.data() + values.size() - number);
         dae::check_dropped_rows(model, x);
     }

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 using namespace hilda::tests;
 using Catch::Matchers::Contains;
 
@@ -121,4 +123,86 @@ TEST_CASE("a killed and resumed run writes the outputs of an uninterrupted run",
     const auto rows = csv(in / "whole/outputs.csv");
     CHECK(number(rows[70], "turns.angle") > 6.3);  // more than a turn before the second kill
     CHECK(number(rows.back(), "turns.angle") > 20);
+}
+
+namespace {
+
+/// A rotor of inertia 2 kg m² with 500 rad/s about z at the start, under this torque [N m], and its angle
+std::string rotor(const std::string& torque)
+{
+    return R"({"hilda_model": 1, "name": "rotor", "gravity": [0, 0, 0], "bodies": [
+  {"name": "rotor", "mass": 1, "inertia": [1, 1, 2], "r": [0, 0, 0], "omega": [0, 0, 500]}],
+ "constraints": [{"name": "hinge", "type": "revolute", "body_i": "ground", "body_j": "rotor",
+   "axis_bar_i": [0, 0, 1], "axis_bar_j": [0, 0, 1]}],
+ "forces": [{"name": "T", "type": "torque", "body": "rotor", "frame": "global", "components": [0, 0, ")" +
+           torque + R"("]}],
+ "outputs": [{"name": "phi", "type": "angle", "body_i": "ground", "body_j": "rotor", "axis_bar_i": [0, 0, 1],
+   "axis_bar_j": [0, 0, 1]}, {"name": "twice", "type": "expression", "value": "2*phi.angle - t"}]})";
+}
+
+}  // namespace
+
+TEST_CASE("the angle of a rotor is right at output intervals of many turns with every adaptive scheme",
+          "[run][outputs][adaptive]")
+{
+    const Scratch in;
+    const auto check = [&](const std::string& scheme, const std::string& torque, const auto& phi) {
+        CAPTURE(scheme, torque);
+        write(in / "m.json", rotor(torque));
+        const Ended ended = call(in, {"run", "m.json", "--integrator", scheme, "--rtol", "1e-8", "--end", "4",
+                                      "--interval", "1", "--output", scheme, "--force"});
+        CAPTURE(ended.err);
+        REQUIRE(ended.code == 0);
+        const auto rows = csv(in / (scheme + "/outputs.csv"));
+        REQUIRE(rows.size() == 5);
+        for (const auto& row : rows) {
+            const double t = number(row, "t");
+            // The orientation itself drifts by 2 rad with ida-rp-index1.
+            CHECK(number(row, "phi.angle") == Approx(phi(t)).margin(scheme == "ida-rp-index1" ? 3 : 0.05));
+            CHECK(number(row, "twice") == Approx(2 * number(row, "phi.angle") - t));
+        }
+    };
+    for (const std::string scheme : {"rA-dp-5", "rA-dop853", "rA-radau-5", "ida-rp", "ida-rp-index1"}) {
+        check(scheme, "0", [](double t) { return 500 * t; });
+        // It turns back after 2.2 s. The mean of the rates of two rows is wrong by 88 rad.
+        check(scheme, "-300*t^2", [](double t) { return 500 * t - 12.5 * std::pow(t, 4); });
+    }
+    check("rA-rattle-adaptive", "-600", [](double t) { return 500 * t - 150 * t * t; });
+}
+
+TEST_CASE("a resumed adaptive run continues the count of turns", "[run][outputs][adaptive][resume]")
+{
+    const Scratch in;
+    write(in / "m.json", rotor("-300*t^2"));
+    for (const std::string scheme : {"rA-dp-5", "rA-dop853", "rA-radau-5"}) {
+        CAPTURE(scheme);
+        const std::vector<std::string> options = {"run", "m.json", "--integrator", scheme,     "--interval",
+                                                  "1",   "--rtol", "1e-8",         "--output", scheme};
+        REQUIRE(call(in, with(options, {"--end", "2", "--checkpoint", "1"})).code == 0);
+        const Ended resumed = call(in, with(options, {"--resume", "--end", "4"}));
+        CAPTURE(resumed.err);
+        REQUIRE(resumed.code == 0);
+        const auto rows = csv(in / (scheme + "/outputs.csv"));
+        REQUIRE(rows.size() == 5);
+        CHECK(number(rows.back(), "phi.angle") == Approx(500 * 4 - 12.5 * 256).margin(0.01));
+    }
+}
+
+TEST_CASE("an event on an angle is found after many turns of an adaptive run", "[run][outputs][adaptive]")
+{
+    const Scratch in;
+    std::string model = rotor("0");
+    model.replace(model.rfind('}'), 1,
+                  R"(, "events": [{"name": "turned", "value": "phi.angle - 1000.5", "action": "stop"}]})");
+    write(in / "m.json", model);
+    for (const std::string scheme : {"rA-dp-5", "rA-dop853", "rA-radau-5"}) {
+        CAPTURE(scheme);
+        const Ended ended = call(in, {"run", "m.json", "--integrator", scheme, "--rtol", "1e-8", "--end",
+                                      "10", "--interval", "1", "--output", scheme});
+        CAPTURE(ended.err);
+        REQUIRE(ended.code == 0);
+        CHECK(number(csv(in / (scheme + "/events.csv")).at(0), "t") == Approx(2.001).epsilon(1e-9));
+        CHECK(number(csv(in / (scheme + "/outputs.csv")).back(), "phi.angle") ==
+              Approx(1000.5).epsilon(1e-9));
+    }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/linear_springs.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,10 @@ bool LinearSprings<n>::is_stable(double h, double damping_factor) const
     if (P.dot(W.diagonal()) < 4) return true;  // the trace of W P is an upper limit
     if (!P.allFinite()) return false;
     const Vector root = P.cwiseSqrt();
-    const Matrix scaled = root.asDiagonal() * W * root.asDiagonal();  // has the eigenvalues of W P
-    return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff() < 4;
+    // has the eigenvalues 4 - λ with those λ of W P: positive definite if all are below 4
+    Matrix remainder = -(root.asDiagonal() * W * root.asDiagonal());
+    remainder.diagonal().array() += 4;
+    return remainder.allFinite() && Eigen::LLT<Matrix>(remainder).info() == Eigen::Success;
 }
 
 template <int n>

@@ -21,7 +21,7 @@ const bool registered_contacts = io::Registry<SinkType>::add(
              throw io::UsageError(
                  fmt::format("{}: --contacts writes columns for each pair of bodies, at most {} pairs of "
                              "groups; {} has {}; "
-                             "--vtk writes the contacts of each frame",
+                             "--vtk DT writes the contacts of each frame",
                              run.command, ContactOutputs::most_pairs_with_columns, run.model_name, pairs));
          auto columns = contact_columns(run.model);
          if (columns->columns.empty())

@@ -195,17 +195,31 @@ std::vector<NamedBoundary> read_mesh(ObjectReader& o, NamedBoundary b)
     b.two_sided =
         o.flag("two_sided",
                {"If true, particles are in contact with both sides of the triangles, and their orientation "
-                "has no meaning.",
+                "has no meaning. An edge may then have more than two triangles.",
                 "true"},
                false);
-    if (b.two_sided) orient(*b.mesh);
+    const bool repairs =
+        o.flag("repair",
+               {"If true, triangles are turned to the orientation of their neighbours, each connected part "
+                "as its first triangle, with a notice. A two_sided mesh does not need it.",
+                "true"},
+               false);
+    const auto add_notice = [&](std::size_t number, const char* what) {
+        if (number == 0) return;
+        b.notice += (b.notice.empty() ? "" : "; ") + std::to_string(number) + what;
+    };
+    if (b.two_sided)
+        add_notice(remove_copies(*b.mesh), " triangles with the vertices of another one are removed");
+    if (b.two_sided || repairs)
+        if (const std::size_t turned = orient(*b.mesh); !b.two_sided)
+            add_notice(turned, " triangles are turned to the orientation of their neighbours");
     const Vec3 rotation =
         o.vec3("rotation",
                {"Rotation of the mesh about r at the start, a rotation vector in the global frame [rad].",
                 "[0, 0, 0.5]"},
                Vec3{0, 0, 0});
     b.boundary.p = turned({1, {0, 0, 0}}, rotation);
-    o.located([&] { check_mesh(*b.mesh, b.name); });
+    o.located([&] { check_mesh(*b.mesh, b.name, b.two_sided && !o.has("density")); });
     const SolidBody inside = o.has("density") ? solid_inside(o, *b.mesh) : SolidBody{};
     const std::optional<SolidBody> solid =
         read_density(o, inside,

@@ -95,6 +95,15 @@ Welded weld(TriangleMesh& mesh)
     return welded;
 }
 
+std::size_t remove_copies(TriangleMesh& mesh)
+{
+    std::set<std::array<std::uint32_t, 3>> seen;
+    return std::erase_if(mesh.triangle, [&](std::array<std::uint32_t, 3> t) {
+        std::sort(t.begin(), t.end());
+        return !seen.insert(t).second;
+    });
+}
+
 std::size_t orient(TriangleMesh& mesh)
 {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at_edge;

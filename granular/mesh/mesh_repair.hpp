@@ -19,6 +19,10 @@ struct Welded {
 /// corners would be two edges, with a contact each. Indices without a vertex remain.
 Welded weld(TriangleMesh& mesh);
 
+/// Removes triangles with the vertices of an earlier one, also of the opposite orientation, for a mesh whose
+/// orientation has no meaning. Returns their number.
+std::size_t remove_copies(TriangleMesh& mesh);
+
 /// Turns triangles so that neighbours have the same orientation, each connected part as its first triangle,
 /// and returns the number of turned ones. Edges with more than two triangles and surfaces with one side,
 /// such as Möbius strips, remain for check_mesh().

@@ -146,7 +146,7 @@ int World::add_boundary(const Boundary& b)
 int World::add(const Boundary& b, const TriangleMesh& mesh, bool two_sided)
 {
     const std::string name = "boundary " + std::to_string(boundaries.size());
-    check_mesh(mesh, name);
+    check_mesh(mesh, name, two_sided);
     if (b.shape != Boundary::Shape::mesh)
         refuse(name, "the shape of a boundary with triangles must be a mesh", static_cast<int>(b.shape));
     const std::size_t triangles = meshes->triangle.size() + mesh.triangle.size();

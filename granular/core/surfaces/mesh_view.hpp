@@ -9,7 +9,7 @@
 ///
 /// - triangle: p is not outside across any of its edges, and not closer to the plane of a neighbour across a
 ///             smooth concave edge,
-/// - edge ab:  p is outside of both triangles, (p - a) · (b - a) > 0 and (p - b) · (a - b) > 0,
+/// - edge ab:  p is outside of all its triangles, (p - a) · (b - a) > 0 and (p - b) · (a - b) > 0,
 /// - vertex v: (p - v) · e ≤ 0 for all edges e that leave v.
 ///
 /// An edge is smooth if the normals of its triangles differ by less than 20 degrees. On its concave side p is
@@ -47,8 +47,10 @@ struct MeshTriangle {
     };
 
     std::uint32_t vertex[3];
-    std::uint32_t across[3];  ///< the triangle on the other side of each edge, or no_triangle
-    std::uint32_t boundary;   ///< number of the boundary to which the mesh belongs
+    /// The triangle on the other side of each edge, or no_triangle. The triangles of an edge with more than
+    /// two, in a two-sided mesh, form a ring.
+    std::uint32_t across[3];
+    std::uint32_t boundary;  ///< number of the boundary to which the mesh belongs
     /// two_sided, owns_edge << k, owns_vertex << k; smooth_concave << k or smooth_convex << k, seen from the
     /// front, if edge k is smooth and not within a plane
     std::uint32_t flags;
@@ -71,6 +73,27 @@ namespace detail {
 HILDA_HD inline int edge_from(const MeshTriangle& T, std::uint32_t v)
 {
     return T.vertex[0] == v ? 0 : T.vertex[1] == v ? 1 : 2;
+}
+
+/// The number of the edge of a triangle between the vertices u and v
+HILDA_HD inline int edge_between(const MeshTriangle& T, std::uint32_t u, std::uint32_t v)
+{
+    const int k = edge_from(T, v);
+    return T.vertex[k == 2 ? 0 : k + 1] == u ? k : edge_from(T, u);
+}
+
+/// Calls f(triangle, number of the edge) for the other triangles at edge k of the triangle t.
+template <class F>
+HILDA_HD void each_across(const MeshView& mesh, std::uint32_t t, int k, const F& f)
+{
+    const MeshTriangle& T = mesh.triangle[t];
+    const std::uint32_t u = T.vertex[k], v = T.vertex[k == 2 ? 0 : k + 1];
+    for (std::uint32_t next = T.across[k]; next != no_triangle && next != t;) {
+        const MeshTriangle& other = mesh.triangle[next];
+        const int edge = edge_between(other, u, v);
+        f(other, edge);
+        next = other.across[edge];
+    }
 }
 
 /// Whether p, which is above the triangle t at the given height, is closer to the plane of a neighbour across
@@ -124,11 +147,12 @@ HILDA_HD inline Nearest nearest(const MeshView& mesh, std::uint32_t t, const Vec
         const double along = (p - a).dot(e);
         if (!(along > 0 && (p - b).dot(a - b) > 0)) continue;
         Vec3 normal = T.face.n;
-        if (T.across[k] != no_triangle) {
-            const MeshTriangle& other = mesh.triangle[T.across[k]];
-            if (other.edge[detail::edge_from(other, v)].height(p) < 0) continue;
-            normal += other.face.n;
-        }
+        bool is_outside = true;
+        detail::each_across(mesh, t, k, [&](const MeshTriangle& other, int edge) {
+            is_outside = is_outside && !(other.edge[edge].height(p) < 0);
+            if (!two_sided) normal += other.face.n;
+        });
+        if (!is_outside) continue;
         return detail::minimum_at(p, a + (along / e.dot(e)) * e, normal, two_sided);
     }
     for (int k = 0; k < 3; ++k) {
@@ -203,10 +227,9 @@ HILDA_HD inline double distance_to_ownership(const MeshView& mesh, std::uint32_t
         const Vec3 a = mesh.vertex[u], b = mesh.vertex[v], e = (1 / (b - a).norm()) * (b - a);
         double violation = -outside[k];
         raise(violation, (a - p).dot(e)), raise(violation, (p - b).dot(e));
-        if (T.across[k] != no_triangle) {
-            const MeshTriangle& other = mesh.triangle[T.across[k]];
-            raise(violation, -other.edge[detail::edge_from(other, v)].height(p));
-        }
+        detail::each_across(mesh, t, k, [&](const MeshTriangle& other, int edge) {
+            raise(violation, -other.edge[edge].height(p));
+        });
         if (violation < least) least = violation;
     }
     for (int k = 0; k < 3; ++k) {

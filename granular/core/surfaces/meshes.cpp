@@ -60,6 +60,11 @@ void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_side
         triangle.push_back(T);
     }
 
+    // The normals of a two-sided mesh can cancel. One of them is used then.
+    for (std::uint32_t t = 0; two_sided && t < triangles; ++t)
+        for (const std::uint32_t v : triangle[first + t].vertex)
+            if (!(vertex_normal[v].norm() > 1e-9)) vertex_normal[v] = triangle[first + t].face.n;
+
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
         return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
     });
@@ -73,13 +78,21 @@ void Meshes::add(const TriangleMesh& mesh, std::uint32_t boundary, bool two_side
             k = end;
         }
     };
+    const auto side = [&](std::size_t k) -> MeshTriangle& { return triangle[first + edges[k].triangle]; };
     each_edge([&](std::size_t k, std::size_t end) {
-        MeshTriangle& a = triangle[first + edges[k].triangle];
+        MeshTriangle& a = side(k);
         a.flags |= MeshTriangle::owns_edge << edges[k].number;
+        for (std::size_t m = k; end - k >= 2 && m < end; ++m)
+            side(m).across[edges[m].number] = first + edges[m + 1 < end ? m + 1 : k].triangle;
+        for (std::size_t m = k; end - k > 2 && m < end; ++m)  // coplanar ones; see below
+            for (std::size_t n = m + 1; n < end; ++n) {
+                const MeshPlane& plane = side(m).edge[edges[m].number];
+                MeshPlane& other = side(n).edge[edges[n].number];
+                if (plane.n.dot(other.n) < 0 && plane.n.cross(other.n).norm() < 1e-12)
+                    other = {-plane.n, -plane.offset};
+            }
         if (end - k == 2) {
-            MeshTriangle& b = triangle[first + edges[k + 1].triangle];
-            a.across[edges[k].number] = first + edges[k + 1].triangle;
-            b.across[edges[k + 1].number] = first + edges[k].triangle;
+            MeshTriangle& b = side(k + 1);
             const double cosine = a.face.n.dot(b.face.n);
             if (cosine > 0 && a.face.n.cross(b.face.n).norm() < 1e-12) {
                 const MeshPlane& plane = a.edge[edges[k].number];

@@ -125,7 +125,7 @@ void for_each_edge(const TriangleMesh& mesh, const Use& use)
     }
 }
 
-void check_edges(const TriangleMesh& mesh, const std::string& name)
+void check_edges(const TriangleMesh& mesh, const std::string& name, bool two_sided)
 {
     // whether the side goes from the lower vertex of its edge to the higher one
     const auto rises = [&](const Side& s) {
@@ -135,10 +135,11 @@ void check_edges(const TriangleMesh& mesh, const std::string& name)
         const auto edge = [&] {
             return "the edge of vertices " + std::to_string(low) + " and " + std::to_string(first->high);
         };
-        if (last - first > 2)
+        if (last - first > 2 && !two_sided)
             refuse(name, first[2].triangle(),
                    "must not be the third one at an edge: " + edge() +
-                       " must have at most 2 triangles, got " + std::to_string(last - first));
+                       " must have at most 2 triangles, or the mesh be two_sided, got " +
+                       std::to_string(last - first));
         if (last - first == 2 && rises(first[0]) == rises(first[1]))
             refuse(name, first[1].triangle(),
                    "must have the orientation of its neighbours: its direction along " + edge() +
@@ -187,7 +188,7 @@ void BoundingBox::add(const Vec3& r)
     high = {std::max(high.x, r.x), std::max(high.y, r.y), std::max(high.z, r.z)};
 }
 
-void check_mesh(const TriangleMesh& mesh, const std::string& name)
+void check_mesh(const TriangleMesh& mesh, const std::string& name, bool two_sided)
 {
     if (mesh.triangle.empty()) throw io::InvalidInput(name + ": a mesh must have a triangle, got none");
     if (mesh.triangle.size() > TriangleMesh::most_triangles)
@@ -197,7 +198,7 @@ void check_mesh(const TriangleMesh& mesh, const std::string& name)
     check_indices(mesh, name);
     check_vertices(mesh, name);
     check_areas(mesh, name);
-    check_edges(mesh, name);
+    check_edges(mesh, name, two_sided);
 }
 
 std::size_t open_edges(const TriangleMesh& mesh)

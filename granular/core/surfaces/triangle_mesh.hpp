@@ -32,8 +32,8 @@ struct BoundingBox {
 
 /// Throws io::InvalidInput "NAME: ..." with the number of the triangle, counted from 0, if the mesh has no
 /// triangle or too many, a vertex that is not finite, an index without vertex, a triangle without area, an
-/// edge with more than two triangles, or two neighbours of opposite orientation.
-void check_mesh(const TriangleMesh& mesh, const std::string& name);
+/// edge with more than two triangles unless `two_sided`, or two neighbours of opposite orientation.
+void check_mesh(const TriangleMesh& mesh, const std::string& name, bool two_sided = false);
 
 /// Number of edges with a single triangle; 0 for a closed mesh
 std::size_t open_edges(const TriangleMesh& mesh);

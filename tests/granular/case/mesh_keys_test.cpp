@@ -184,3 +184,28 @@ TEST_CASE("particles outside of a closed mesh that faces inwards are noticed", "
     CHECK(
         notices(R"("box": {"low": [-0.5, -0.5, -0.5], "high": [0.5, 0.5, 0.5]}, "two_sided": true)").empty());
 }
+
+TEST_CASE("meshes are repaired on request, and two-sided ones may have three triangles at an edge",
+          "[granular][mesh][case]")
+{
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path file = folder / "repair.obj";
+    const auto notices = [&](const std::string& faces, const std::string& members) {
+        std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 -1\n" << faces;
+        return read_mesh_case("\"file\": \"" + file.string() + "\", " + members).notices;
+    };
+    const std::string flipped = "f 1 2 3\nf 1 2 4\n", three = "f 1 2 3\nf 2 1 4\nf 1 2 5\n";
+    CHECK_THROWS_WITH(notices(flipped, R"("repair": false)"),
+                      Catch::Contains("orientation of its neighbours"));
+    const std::vector<std::string> turned = notices(flipped, R"("repair": true)");
+    REQUIRE(turned.size() == 1);
+    CHECK_THAT(turned[0], Catch::Contains("1 triangles are turned to the orientation of their neighbours"));
+    CHECK(notices(flipped, R"("two_sided": true)").empty());
+    CHECK_THROWS_WITH(notices(three, R"("repair": true)"),
+                      Catch::Contains("or the mesh be two_sided, got 3"));
+    CHECK(notices(three, R"("two_sided": true)").empty());
+    const std::vector<std::string> copies = notices(three + "f 2 1 3\n", R"("two_sided": true)");
+    REQUIRE(copies.size() == 1);
+    CHECK_THAT(copies[0], Catch::Contains("1 triangles with the vertices of another one are removed"));
+    std::filesystem::remove(file);
+}

@@ -88,7 +88,8 @@ TEST_CASE("check_mesh names the triangle and the value of a fault", "[granular][
     m.triangle.push_back({1, 4, 2});
     CHECK(fault(m) ==
           "m: triangle 4 must not be the third one at an edge: the edge of vertices 1 and 2 must have at "
-          "most 2 triangles, got 3");
+          "most 2 triangles, or the mesh be two_sided, got 3");
+    CHECK_NOTHROW(check_mesh(m, "m", true));
     m = tetrahedron();
     std::swap(m.triangle[3][0], m.triangle[3][1]);
     CHECK(fault(m) ==

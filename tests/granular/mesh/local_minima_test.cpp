@@ -192,6 +192,49 @@ TEST_CASE("a two-sided plate has contacts on both sides and at its rim", "[granu
     }
 }
 
+TEST_CASE("a wall on a floor of one mesh has the contacts of two plates", "[granular][mesh]")
+{
+    // The floor z = 0 is divided at x = 0, where the wall x = 0 begins: three triangles at the edges of the
+    // foot. The orientation of the triangles is arbitrary.
+    granular::Random random(29);
+    TriangleMesh shape;
+    for (const double y : {-1., 0., 1.})
+        for (const Vec3& v : {Vec3{-1, y, 0}, Vec3{0, y, 0}, Vec3{1, y, 0}, Vec3{0, y, 1}})
+            shape.vertex.push_back(v);
+    for (const std::uint32_t k : {0u, 4u})
+        for (const auto& [a, b] : {std::pair{0u, 1u}, {1u, 2u}, {1u, 3u}})
+            shape.triangle.push_back({k + a, k + b, k + b + 4}),
+                shape.triangle.push_back({k + a, k + b + 4, k + a + 4});
+    for (auto& t : shape.triangle)
+        if (random.number() < 0.5) std::swap(t[1], t[2]);
+    CHECK_NOTHROW(check_mesh(TriangleMesh{shape.vertex, {{1, 5, 0}, {1, 5, 2}, {1, 5, 3}}}, "fan", true));
+    const Meshes meshes = meshes_of(shape, true);
+    const double R = 0.3;
+    for (int k = 0; k < 4000; ++k) {
+        Vec3 p{random.number(-0.5, 0.5), random.number(-0.9, 0.9), random.number(-0.4, 1.5)};
+        if (k % 4 == 0) p.x = 0;
+        if (k % 8 == 1) p.y = 0;
+        std::vector<double> expected;
+        if (std::abs(p.z) < R && (p.x != 0 || p.z < 0)) expected.push_back(std::abs(p.z));
+        if (p.z > 0 && p.x != 0) {
+            const double to_wall = std::hypot(p.x, std::max(p.z - 1, 0.));
+            if (to_wall < R) expected.push_back(to_wall);
+        } else if (p.z > 1 && p.z - 1 < R) {
+            expected.push_back(p.z - 1);
+        }
+        if (p.x == 0 && p.z > 0 && p.z <= 1) continue;  // on the wall
+        std::vector<double> found;
+        for (const Nearest& near : minima(meshes, p, R)) found.push_back(near.distance);
+        std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
+        CAPTURE(p.x, p.y, p.z);
+        REQUIRE(found.size() == expected.size());
+        for (std::size_t n = 0; n < found.size(); ++n) CHECK(std::abs(found[n] - expected[n]) < 1e-12);
+        for (std::uint32_t t = 0; t < meshes.triangle.size(); ++t)
+            if (distance_to_ownership(meshes.view(), t, p) > 1e-12)
+                CHECK_FALSE(nearest(meshes.view(), t, p, R).distance < R);
+    }
+}
+
 TEST_CASE("inside of a sphere of triangles a grain has one contact, with the closest one", "[granular][mesh]")
 {
     granular::Random random(23);

@@ -68,6 +68,17 @@ TEST_CASE("copies of triangles and triangles without an area after welding are r
     CHECK(mesh.triangle.size() == count);
 }
 
+TEST_CASE("copies of triangles of any orientation are removed from a two-sided mesh", "[granular][mesh]")
+{
+    TriangleMesh mesh = plate_mesh(1, 1, 0.5);
+    const std::size_t count = mesh.triangle.size();
+    mesh.triangle.push_back({mesh.triangle[1][2], mesh.triangle[1][1], mesh.triangle[1][0]});
+    mesh.triangle.push_back(mesh.triangle[0]);
+    CHECK(remove_copies(mesh) == 2);
+    CHECK(mesh.triangle.size() == count);
+    CHECK_NOTHROW(check_mesh(mesh, "mesh"));
+}
+
 TEST_CASE("orientation turns the triangles that differ from their neighbours", "[granular][mesh]")
 {
     const auto seed = GENERATE(range(1, 21));

@@ -406,7 +406,8 @@ protected:
                 .in_contact = p.in_contact.data(),
                 .count = p.count,
                 .internal = internal ? p.internal.data() : nullptr,
-                .stored = is_cpu ? plan.stored() : StoredLoads{}};
+                .stored = is_cpu ? plan.stored() : StoredLoads{},
+                .image = p.image.size() > 0 ? p.image.data() : nullptr};
     }
 
     LawView law_view(const LoadTimes& times) const

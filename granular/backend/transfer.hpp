@@ -61,7 +61,7 @@ void copy(const Backend& on, Arrays<To>& to, Arrays<From>& from)
     one(p.position_at_build, pf.position_at_build);
     // The host does not use the loads.
     one(q.start, qf.start), one(q.i, qf.i), one(q.j, qf.j), one(q.law, qf.law);
-    one(q.in_contact, qf.in_contact), one(q.history, qf.history);
+    one(q.in_contact, qf.in_contact), one(q.image, qf.image), one(q.history, qf.history);
     one(q.rotation_history, qf.rotation_history), one(q.internal, qf.internal);
     p.count = pf.count, q.count = qf.count;
     one(to.clump, from.clump);

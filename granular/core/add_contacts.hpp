@@ -24,7 +24,7 @@ struct AddContacts {
             return find_boundary_contact(contact, particles.grid, particles.position[i], v_i, w_i,
                                          laws.surfaces, j & ~PairView::boundary_bit);
         const Float4 v_j = particles.velocity[j], w_j = particles.omega[j];
-        const Difference d = difference(particles.grid, particles.position[i], particles.position[j]);
+        const Difference d = pair_difference(particles, pairs, n);
         const std::int64_t D = radius_in_units(v_i.w, units_per_metre) +
                                radius_in_units(v_j.w, units_per_metre),
                            x = d.x, y = d.y, z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;

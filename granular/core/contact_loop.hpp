@@ -55,6 +55,9 @@ struct PairView {
     /// The internal variables of History in their order; nullptr if no law has internal variables
     Float4* internal = nullptr;
     StoredLoads stored = {};
+    /// The periodic image of j; see Image. nullptr: the nearest image, which the owner cells determine. It is
+    /// set in a domain with a short period, in which two particles can touch through several images.
+    const std::uint8_t* image = nullptr;
 
     HILDA_HD Load& load_of(std::uint32_t n) const { return load[stored.slot(n)]; }
     HILDA_HD Float4& torque_of(std::uint32_t n) const { return torque[stored.slot(n)]; }
@@ -79,6 +82,15 @@ struct ParticleView {
 
     HILDA_HD bool is_ghost(std::uint32_t k) const { return ghost != nullptr && ghost[k] != 0; }
 };
+
+/// Difference of the positions of a pair of particles, i minus the image of j [units]
+HILDA_HD inline Difference pair_difference(const ParticleView& particles, const PairView& pairs,
+                                           std::uint32_t n)
+{
+    const Position &i = particles.position[pairs.i[n]], &j = particles.position[pairs.j[n]];
+    return pairs.image == nullptr ? difference(particles.grid, i, j)
+                                  : difference(particles.grid, i, j, pairs.image[n]);
+}
 
 /// The force laws and surfaces that the contact loop reads
 struct LawView {

@@ -39,8 +39,11 @@ struct ContactLoop : detail::ContactPacks {
                              n[k] = of_law[std::min(first + k, of_law_count - 1)];
                              i[k] = pairs.i[n[k]], j[k] = pairs.j[n[k]];
                          }
-                         store_loads(evaluate_particles(law, integers(i, j).to_floats(), i, j, n, overlaps),
-                                     n);
+                         std::uint8_t image[lanes];
+                         copy_images(n, image);
+                         store_loads(
+                             evaluate_particles(law, integers(i, j, image).to_floats(), i, j, n, overlaps),
+                             n);
                      }
                  });
         each_law(selected.boundary, selected.boundary_count,
@@ -59,6 +62,8 @@ struct ContactLoop : detail::ContactPacks {
             unsigned valid_lanes = (1u << lanes) - 1;
             std::uint32_t copy_i[lanes], copy_j[lanes];
             std::uint8_t copied_flags[lanes] = {};
+            const std::uint8_t* image = pairs.image != nullptr ? pairs.image + first : nullptr;
+            std::uint8_t copied_images[lanes];
             const bool partial = end - first < lanes;
             const unsigned boundary = partial ? 1 : highest_bits(j);
             if (boundary != 0) {  // a partial pack, or one with boundaries as partners
@@ -74,9 +79,14 @@ struct ContactLoop : detail::ContactPacks {
                 }
                 std::copy_n(contact_flags, valid, copied_flags);
                 i = copy_i, j = copy_j;
+                if (image != nullptr) {
+                    for (std::uint32_t k = 0; k < lanes; ++k)
+                        copied_images[k] = image[std::min(k, valid - 1)];
+                    image = copied_images;
+                }
             }
             const unsigned before = boundary != 0 ? flags(copied_flags) : flags(contact_flags);
-            const unsigned overlapping = integers(i, j).squares.positive() & valid_lanes,
+            const unsigned overlapping = integers(i, j, image).squares.positive() & valid_lanes,
                            ended = before & valid_lanes & ~overlapping;
             out.touching_count += append(out.touching + out.touching_count, first, overlapping);
             if (boundary == 0) {
@@ -95,8 +105,10 @@ struct ContactLoop : detail::ContactPacks {
         std::uint32_t n[lanes], i[lanes], j[lanes], found = 0;
         const auto test = [&] {
             if (found == 0) return;
-            for (std::uint32_t k = found; k < lanes; ++k) i[k] = i[0], j[k] = j[0];
-            const unsigned overlapping = integers(i, j).squares.positive();
+            for (std::uint32_t k = found; k < lanes; ++k) n[k] = n[0], i[k] = i[0], j[k] = j[0];
+            std::uint8_t image[lanes];
+            copy_images(n, image);
+            const unsigned overlapping = integers(i, j, image).squares.positive();
             for (std::uint32_t k = 0; k < found; ++k) {
                 if ((overlapping >> k & 1) != 0)
                     pairs.in_contact[n[k]] = 1, out.touching[out.touching_count++] = n[k];

@@ -69,7 +69,10 @@ struct ContactPacks {
                 {to_float(x), to_float(y), to_float(z)}, squares.difference(), squares.sum(), to_float(D)};
         }
     };
-    Integers integers(const std::uint32_t* i, const std::uint32_t* j, Pack R_i, Pack R_j) const
+    /// image: of each pair; only with images
+    template <bool with_images>
+    Integers integers_of(const std::uint32_t* i, const std::uint32_t* j, const std::uint8_t* image, Pack R_i,
+                         Pack R_j) const
     {
         const CellGrid& g = particles.grid;
         const auto a = gather_rows<Ints>(particles.position, i), b = gather_rows<Ints>(particles.position, j);
@@ -77,21 +80,47 @@ struct ContactPacks {
         using Unsigned = Ints::Unsigned;
         const int mask_x = (1 << g.shift_y) - 1, mask_y = (1 << (g.shift_z - g.shift_y)) - 1;
         Integers out;
+        out.D = {to_int(R_i * units_per_metre).v + to_int(R_j * units_per_metre).v};
+        if constexpr (with_images) {
+            set_image_differences(i, j, image, out);
+            out.squares = Squares(out.x, out.y, out.z, out.D);
+            return out;
+        }
         out.x = axis_difference(a.x, b.x, a.y, b.y, g, 0, [&](V c) { return V(c & mask_x); });
         out.y = axis_difference(a.x, b.x, a.z, b.z, g, 1, [&](V c) { return V(c >> g.shift_y & mask_y); });
         out.z = axis_difference(a.x, b.x, a.w, b.w, g, 2, [&](V c) { return V(Unsigned(c) >> g.shift_z); });
-        out.D = {to_int(R_i * units_per_metre).v + to_int(R_j * units_per_metre).v};
         out.squares = Squares(out.x, out.y, out.z, out.D);
         return out;
     }
+    /// The differences to images of the particles j. Not inlined, so that the code of other worlds stays fast
+    [[gnu::noinline]] void set_image_differences(const std::uint32_t* i, const std::uint32_t* j,
+                                                 const std::uint8_t* image, Integers& out) const
+    {
+        for (int k = 0; k < lanes; ++k) {
+            const Difference d =
+                difference(particles.grid, particles.position[i[k]], particles.position[j[k]], image[k]);
+            out.x.v[k] = d.x, out.y.v[k] = d.y, out.z.v[k] = d.z;
+        }
+    }
+    /// The images of these pairs, if PairView::image is set
+    void copy_images(const std::uint32_t* n, std::uint8_t* to) const
+    {
+        for (int k = 0; pairs.image != nullptr && k < lanes; ++k) to[k] = pairs.image[n[k]];
+    }
     /// The same, for pairs that need not be in contact: for these only positions and radii are read.
-    Integers integers(const std::uint32_t* i, const std::uint32_t* j) const
+    template <bool with_images>
+    Integers integers_of(const std::uint32_t* i, const std::uint32_t* j, const std::uint8_t* image) const
     {
         Pack R_i = particles.radius, R_j = R_i;
         if (!(particles.radius > 0))
             R_i = gather_rows<Pack>(particles.velocity, i).w,
             R_j = gather_rows<Pack>(particles.velocity, j).w;
-        return integers(i, j, R_i, R_j);
+        return integers_of<with_images>(i, j, image, R_i, R_j);
+    }
+    /// The same, with images if PairView::image is set
+    Integers integers(const std::uint32_t* i, const std::uint32_t* j, const std::uint8_t* image) const
+    {
+        return pairs.image != nullptr ? integers_of<true>(i, j, image) : integers_of<false>(i, j, image);
     }
 
     void clear_history(std::uint32_t n) const

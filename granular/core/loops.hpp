@@ -51,7 +51,7 @@ struct FindLoad {
             const float common = particles.radius;
             const float R_i = common > 0 ? common : particles.velocity[i].w,
                         R_j = common > 0 ? common : particles.velocity[j].w;
-            const Difference d = difference(particles.grid, p_i, particles.position[j]);
+            const Difference d = pair_difference(particles, pairs, k);
             const std::int64_t D = radius_in_units(R_i, units_per_metre) +
                                    radius_in_units(R_j, units_per_metre),
                                x = d.x, y = d.y, z = d.z, d2 = x * x + y * y + z * z, q = D * D - d2;

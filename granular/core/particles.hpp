@@ -180,6 +180,38 @@ HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, cons
             difference(g.z_of(i.cell), g.z_of(j.cell), i.z, j.z, g, 2)};
 }
 
+/// A periodic image of particle j in a pair: j moved by (x, y, z) periods, each -1, 0 or 1, in one byte
+struct Image {
+    static constexpr std::uint8_t none = 13;  ///< j itself
+
+    HILDA_HD static std::uint8_t pack(std::int32_t x, std::int32_t y, std::int32_t z)
+    {
+        return static_cast<std::uint8_t>(none + x + 3 * y + 9 * z);
+    }
+    HILDA_HD static std::int32_t x_of(std::uint8_t image) { return image % 3 - 1; }
+    HILDA_HD static std::int32_t y_of(std::uint8_t image) { return image / 3 % 3 - 1; }
+    HILDA_HD static std::int32_t z_of(std::uint8_t image) { return image / 9 - 1; }
+};
+/// The periods by which the nearest image of j is moved along an axis; see the function difference()
+HILDA_HD inline std::int32_t nearest_period(std::int32_t cell_i, std::int32_t cell_j, const CellGrid& g,
+                                            int axis)
+{
+    const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
+    if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return 0;
+    return d > 0 ? 1 : -1;
+}
+/// Difference of two positions, i minus this image of j [units]
+HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, const Position& j,
+                                      std::uint8_t image)
+{
+    const auto along = [&](std::int32_t at_i, std::int32_t at_j, std::int32_t periods, int axis) {
+        return wrapped_difference(wrapped_difference(at_i, at_j),
+                                  wrapped_product(periods, wrapped_product(g.cells[axis], g.width[axis])));
+    };
+    return {along(i.x, j.x, Image::x_of(image), 0), along(i.y, j.y, Image::y_of(image), 1),
+            along(i.z, j.z, Image::z_of(image), 2)};
+}
+
 /// Position in the global frame [m]
 HILDA_HD inline Vec<double> global_position(const CellGrid& g, const Position& p)
 {

@@ -68,6 +68,7 @@ void remove_particles(Particles<par::Cpu>& p, Pairs<par::Cpu>& pairs, const std:
         rows.push_back(n);
     }
     keep(pairs.i, rows), keep(pairs.j, rows), keep(pairs.in_contact, rows), keep(pairs.history, rows);
+    keep(pairs.image, rows);
     keep(pairs.rotation_history, rows), keep(pairs.internal, rows);
     pairs.count = static_cast<std::uint32_t>(rows.size());
 }

@@ -224,7 +224,10 @@ struct Sweep : detail::ContactPacks {
         Pack overlaps(0.f);
         const std::uint32_t last = arrays.start[end];
         for (std::uint32_t first = arrays.start[begin]; first < last; first += Hits::most) {
-            find_hits(first, std::min(first + Hits::most, last), hits);
+            if (pairs.image == nullptr)
+                find_hits<false>(first, std::min(first + Hits::most, last), hits);
+            else
+                find_hits<true>(first, std::min(first + Hits::most, last), hits);
             evaluate_hits(hits, overlaps);
             add_hits<Float8>(hits, begin, end_of_range, hits.load, pairs.load, sum_i, plan.sum_j.data());
             if (rotates)
@@ -257,6 +260,7 @@ struct Sweep : detail::ContactPacks {
     // registers.
 
     /// Lists the contacts among the pairs from `begin` on; clears those that have ended.
+    template <bool with_images>
     [[gnu::noinline, gnu::flatten]] void find_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
     {
         hits.count = hits.stored_count = 0;
@@ -264,13 +268,18 @@ struct Sweep : detail::ContactPacks {
             const std::uint32_t *i = pairs.i + first, *j = pairs.j + first;
             const std::uint8_t* in_contact = pairs.in_contact + first;
             std::uint32_t copy_i[lanes], copy_j[lanes];
-            std::uint8_t copy_contact[lanes] = {};
+            std::uint8_t copy_contact[lanes] = {}, copy_image[lanes];
+            const std::uint8_t* image = with_images ? pairs.image + first : nullptr;
             const std::uint32_t valid = std::min<std::uint32_t>(lanes, end - first);
             if (first + lanes > pairs.count) {  // the last pack of the list
                 for (std::uint32_t k = 0; k < lanes; ++k)
                     copy_i[k] = i[std::min(k, valid - 1)], copy_j[k] = j[std::min(k, valid - 1)];
                 std::copy_n(in_contact, valid, copy_contact);
                 i = copy_i, j = copy_j, in_contact = copy_contact;
+                if constexpr (with_images) {
+                    for (std::uint32_t k = 0; k < lanes; ++k) copy_image[k] = image[std::min(k, valid - 1)];
+                    image = copy_image;
+                }
             }
             const unsigned of_range = (2u << (valid - 1)) - 1, before = flags(in_contact) & of_range,
                            ahead = plan.marks_from(first);
@@ -280,7 +289,7 @@ struct Sweep : detail::ContactPacks {
             j_words = select(near, j_words, i_words);
             std::uint32_t partner[lanes];
             std::memcpy(partner, &j_words, sizeof partner);
-            const Integers found = integers(i, partner);
+            const Integers found = integers_of<with_images>(i, partner, image);
             const unsigned touching = found.squares.positive() & near;
             if (((touching ^ before) & near) != 0) set_flags(pairs.in_contact + first, touching, near);
             for (unsigned ended = before & near & ~touching; ended != 0; ended &= ended - 1)

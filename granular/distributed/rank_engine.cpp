@@ -3,6 +3,7 @@
 
 #include "granular/core/neighbours/cells.hpp"
 #include "granular/distributed/lists.hpp"
+#include "io/error.hpp"
 
 #include <ctime>
 
@@ -300,6 +301,10 @@ void RankEngine::rebuild(const Domain& domain)
 {
     Particles<par::Cpu>& p = own.particle;
     Pairs<par::Cpu>& pairs = own.pairs;
+    if (domain.has_images())
+        throw io::InvalidInput(
+            "domain: a periodic axis must be at least three times as long as the largest "
+            "diameter and the skin, or three cells, in a run with several processes; use one");
     const CellGrid& g = grid = domain.grid;
     replicas = domain.replicas;
     const std::uint32_t before = p.count, *const id = p.id.data();

@@ -23,7 +23,7 @@ namespace {
 
 using detail::shown;  // with the overloads of this file
 
-constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 17};
+constexpr io::Archive::Format format = {.letters = "HILDAGRN", .version = 18};
 
 /// "" if the domain is one that World can have: the neighbour search uses it as an index range. Otherwise the
 /// member that it cannot have, and its value.

@@ -33,6 +33,7 @@ constexpr std::size_t block_size = 4096;
 struct SavedPairs {
     std::vector<std::uint32_t> i, j;
     std::vector<Float4> history, rotation, internal;
+    std::vector<std::uint8_t> image;
 
     /// Adds the contact n of the particle `number` of a block.
     void add(std::uint32_t number, const Pairs<par::Cpu>& pairs, std::uint32_t n, const std::uint32_t* id)
@@ -42,9 +43,13 @@ struct SavedPairs {
         history.push_back(pairs.history.data()[n]);
         if (pairs.rotation_history.size() > 0) rotation.push_back(pairs.rotation_history.data()[n]);
         if (pairs.internal.size() > 0) internal.push_back(pairs.internal.data()[n]);
+        if (pairs.image.size() > 0) image.push_back(pairs.image.data()[n]);
     }
-    void write(io::Archive& a) { a.list(i), a.list(j), a.list(history), a.list(rotation), a.list(internal); }
-    void clear() { i.clear(), j.clear(), history.clear(), rotation.clear(), internal.clear(); }
+    void write(io::Archive& a)
+    {
+        a.list(i), a.list(j), a.list(history), a.list(rotation), a.list(internal), a.list(image);
+    }
+    void clear() { i.clear(), j.clear(), history.clear(), rotation.clear(), internal.clear(), image.clear(); }
 
     /// Reads the contacts of the `particles` that are the last ones of `before` + particles.
     void add(io::Archive& a, std::size_t before, std::size_t particles)
@@ -65,11 +70,15 @@ struct SavedPairs {
         check_vectors(a, block.rotation, "a history");
         list(block.internal, true);
         check_vectors(a, block.internal, "a history");
+        list(block.image, true);
+        a.check_each(
+            block.image, "invalid image of a pair", [](std::uint8_t image) { return image < 27; },
+            [](std::uint8_t image) { return std::to_string(image); });
         const auto append = [&](auto& to, const auto& from) {
             to.insert(to.end(), from.begin(), from.end());
         };
         append(i, block.i), append(j, block.j), append(history, block.history);
-        append(rotation, block.rotation), append(internal, block.internal);
+        append(rotation, block.rotation), append(internal, block.internal), append(image, block.image);
     }
     /// As the pairs of a list before a neighbour search
     void put(Pairs<par::Cpu>& to) const
@@ -79,7 +88,7 @@ struct SavedPairs {
             std::copy(from.begin(), from.end(), values.data());
         };
         list(to.i, i), list(to.j, j), list(to.history, history), list(to.rotation_history, rotation);
-        list(to.internal, internal);
+        list(to.internal, internal), list(to.image, image);
         to.count = static_cast<std::uint32_t>(i.size());
         to.in_contact.resize(i.size());
         par::fill(par::Cpu(), to.in_contact.data(), i.size(), std::uint8_t{1});
@@ -257,9 +266,8 @@ void World::transfer_particles(io::Archive& a)
         }
         pairs.add(a, before, of_block);
     }
-    for (const auto* list : {&pairs.rotation, &pairs.internal})
-        a.check(list->empty() || list->size() == pairs.i.size(),
-                "wrong number of pairs, got " + std::to_string(list->size()));
+    for (const std::size_t size : {pairs.rotation.size(), pairs.internal.size(), pairs.image.size()})
+        a.check(size == 0 || size == pairs.i.size(), "wrong number of pairs, got " + std::to_string(size));
     p.count = static_cast<std::uint32_t>(n);
     inserted_count = n;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> index;  // of the particles, by id

@@ -139,7 +139,8 @@ void World::for_current_loads(const Arrays<par::Cpu>& of, const F& f) const
                                      .torque = rotation_laws ? now->torque : nullptr,
                                      .in_contact = now->in_contact,
                                      .count = count,
-                                     .internal = internal ? now->internal : nullptr},
+                                     .internal = internal ? now->internal : nullptr,
+                                     .image = pairs.image.size() > 0 ? pairs.image.data() + begin : nullptr},
                                     law_view, number, count);
             f(part, *now);
         },
@@ -180,7 +181,7 @@ ContactRecord World::contact(const CurrentLoads& now, std::uint32_t n) const
         c.n = near.n, c.delta = R - near.distance;
         c.C = r - (near.distance + depth) * near.n;
     } else {
-        const Vec3 apart = separation(domain.grid, at, particle.position.data()[j]);
+        const Vec3 apart = separation(domain.grid, now.of, n);
         c.n = (1 / apart.norm()) * apart;
         c.delta = R + particle.velocity.data()[j].w - apart.norm();
         c.C = r - (R - depth) * c.n;
@@ -213,9 +214,11 @@ std::vector<ContactRecord> World::contacts() const
             std::vector<ContactRecord>().swap(part);
         }
     });
-    // Keys differ, so that the order is unique; std::stable_sort needs more memory.
+    // Keys differ, so that the order is unique; std::stable_sort needs more memory. Contacts with two images
+    // of a particle differ in their points.
     std::sort(all.begin(), all.end(), [](const ContactRecord& a, const ContactRecord& b) {
-        return std::tie(a.boundary, a.i, a.j) < std::tie(b.boundary, b.i, b.j);
+        return std::tie(a.boundary, a.i, a.j, a.C.x, a.C.y, a.C.z) <
+               std::tie(b.boundary, b.i, b.j, b.C.x, b.C.y, b.C.z);
     });
     return all;
 }
@@ -294,7 +297,6 @@ void World::add_totals(const To& to) const
     };
     engine->each_piece(true, [&](const Piece& piece) {
         const Arrays<par::Cpu>& of = piece.arrays;
-        const Position* position = of.particle.position.data();
         const Float4* omega = of.particle.omega.data();
         const std::uint32_t* id = of.particle.id.data();
         std::vector<std::vector<Sum>> sums(CurrentLoads::parts(of.pairs.count));
@@ -312,9 +314,9 @@ void World::add_totals(const To& to) const
                 }
                 Sum& sum = of_part.back();
                 if ((j & PairView::boundary_bit) == 0) {
-                    terms.add(separation(domain.grid, position[i], position[j]) -
-                                  (offset_in_clump(id[i]) - offset_in_clump(id[j])),
-                              F);
+                    terms.add(
+                        separation(domain.grid, of, n) - (offset_in_clump(id[i]) - offset_in_clump(id[j])),
+                        F);
                     const bool fixed = !(omega[i].w > 0 && omega[j].w > 0);
                     if (!attached.empty() && fixed) add_wrench(sum, contact(now, n));
                 } else {

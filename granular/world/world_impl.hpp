@@ -55,10 +55,14 @@ inline bool is_near_domain(const CellGrid& g, const Position& p)
     return x < g.cells[0] && y < g.cells[1] && z < g.cells[2] && near(g.local(p.x, x, 0)) &&
            near(g.local(p.y, y, 1)) && near(g.local(p.z, z, 2));
 }
-/// From the centre of j to that of i [m]
-inline Vec3 separation(const CellGrid& g, const Position& i, const Position& j)
+/// From the centre of particle j of a pair, or of its image, to that of i [m]
+inline Vec3 separation(const CellGrid& g, const Arrays<par::Cpu>& of, std::uint32_t pair)
 {
-    const Difference d = difference(g, i, j);
+    const Pairs<par::Cpu>& pairs = of.pairs;
+    const Position* const position = of.particle.position.data();
+    const Position &i = position[pairs.i.data()[pair]], &j = position[pairs.j.data()[pair]];
+    const Difference d =
+        pairs.image.size() > 0 ? difference(g, i, j, pairs.image.data()[pair]) : difference(g, i, j);
     return g.unit * Vec3{double(d.x), double(d.y), double(d.z)};
 }
 /// Rounding error of the conversion to single precision, x - float(x). The volatile store is needed: GCC 12

@@ -56,6 +56,7 @@ struct Pairs {
 
     par::Array<Backend, std::uint32_t> start, i, j, other_start, other;
     par::Array<Backend, std::uint8_t> law, in_contact;
+    par::Array<Backend, std::uint8_t> image;  ///< empty unless Domain::has_images()
     par::Array<Backend, Float4> history, rotation_history, torque, internal;
     par::Array<Backend, Load> load;
     std::uint32_t count = 0;
@@ -63,8 +64,8 @@ struct Pairs {
     std::size_t bytes() const
     {
         return start.bytes() + i.bytes() + j.bytes() + other_start.bytes() + other.bytes() + law.bytes() +
-               in_contact.bytes() + history.bytes() + rotation_history.bytes() + torque.bytes() +
-               internal.bytes() + load.bytes();
+               in_contact.bytes() + image.bytes() + history.bytes() + rotation_history.bytes() +
+               torque.bytes() + internal.bytes() + load.bytes();
     }
 };
 
@@ -88,6 +89,18 @@ struct Domain {
     float largest = 0;           ///< radius of the largest particle [m]
     std::uint32_t replicas = 1;  ///< number of systems that share the domain and do not interact
     std::uint32_t unused = 0;    ///< explicit padding, because checkpoints store the bytes of a Domain
+
+    /// Whether two particles can be closer than the skin through several periodic images along this axis: its
+    /// period is shorter than three times the reach of the largest ones, or has less than three cells. A
+    /// period is longer than the reach: a particle is never close to itself.
+    bool is_short(int axis) const
+    {
+        const double length = grid.unit * grid.width[axis] * grid.cells[axis];
+        return grid.periodic[axis] != 0 &&
+               (grid.cells[axis] < 3 || length < (1 - 1e-6) * 3 * (2. * largest + skin));
+    }
+    /// Whether there is such an axis. The pairs of the list then have images of their own.
+    bool has_images() const { return is_short(0) || is_short(1) || is_short(2); }
 };
 
 constexpr double max_cells = 0x7fffffff;  ///< of all replicas
@@ -139,13 +152,15 @@ public:
 private:
     void sort(const SearchInput& input, Particles<Backend>& particles);
     /// Saves the contacts of the list. Returns their number.
-    std::uint32_t save(const Pairs<Backend>& pairs, bool rotation, bool internal);
+    std::uint32_t save(const Pairs<Backend>& pairs, const ParticleView& particles, bool rotation,
+                       bool internal, bool images);
 
     int shift = 0;  ///< see CellStarts
     par::Array<Backend, std::uint32_t> key, order, new_index, cell_start, counts;
     par::Array<Backend, Float4> scratch;
     par::Array<Backend, SavedContact> saved;  ///< of the previous list
     par::Array<Backend, Float4> saved_rotation, saved_internal;
+    par::Array<Backend, Difference> saved_apart;     ///< with images: pair_difference()
     par::Array<Backend, std::uint32_t> saved_count;  ///< one number
 };
 

@@ -15,7 +15,7 @@ std::size_t Neighbours<Backend>::bytes() const
 {
     return key.bytes() + order.bytes() + new_index.bytes() + cell_start.bytes() + counts.bytes() +
            scratch.bytes() + saved.bytes() + saved_rotation.bytes() + saved_internal.bytes() +
-           saved_count.bytes();
+           saved_apart.bytes() + saved_count.bytes();
 }
 
 template <class Backend>
@@ -69,7 +69,8 @@ void Neighbours<Backend>::sort(const SearchInput& input, Particles<Backend>& p)
 }
 
 template <class Backend>
-std::uint32_t Neighbours<Backend>::save(const Pairs<Backend>& pairs, bool rotation, bool internal)
+std::uint32_t Neighbours<Backend>::save(const Pairs<Backend>& pairs, const ParticleView& particles,
+                                        bool rotation, bool internal, bool images)
 {
     const Backend on;
     const PairView view{.i = pairs.i.data(),
@@ -81,22 +82,25 @@ std::uint32_t Neighbours<Backend>::save(const Pairs<Backend>& pairs, bool rotati
                         .torque = nullptr,
                         .in_contact = pairs.in_contact.data(),
                         .count = pairs.count,
-                        .internal = pairs.internal.data()};
-    const auto each_block = [&](SavedContact* to, Float4* of_rotation, Float4* of_internal) {
+                        .internal = pairs.internal.data(),
+                        .image = pairs.image.size() > 0 ? pairs.image.data() : nullptr};
+    const auto each_block = [&](SavedContact* to, Float4* of_rotation, Float4* of_internal,
+                                Difference* apart) {
         constexpr std::uint32_t block = detail::SaveContacts::block;
         saved_count.resize(1);
         par::fill(on, saved_count.data(), 1, 0u);
-        par::for_each(on, (pairs.count + block - 1) / block,
-                      detail::SaveContacts{view, saved_count.data(), to, of_rotation, of_internal});
+        par::for_each(
+            on, (pairs.count + block - 1) / block,
+            detail::SaveContacts{view, saved_count.data(), to, of_rotation, of_internal, particles, apart});
     };
-    each_block(nullptr, nullptr, nullptr);
+    each_block(nullptr, nullptr, nullptr, nullptr);
     std::uint32_t contacts = 0;
     par::copy_to_host(on, &contacts, saved_count.data(), sizeof contacts);
     saved.resize(contacts), saved_rotation.resize(rotation ? contacts : 0);
-    saved_internal.resize(internal ? contacts : 0);
+    saved_internal.resize(internal ? contacts : 0), saved_apart.resize(images ? contacts : 0);
     if (contacts > 0)
         each_block(saved.data(), rotation ? saved_rotation.data() : nullptr,
-                   internal ? saved_internal.data() : nullptr);
+                   internal ? saved_internal.data() : nullptr, images ? saved_apart.data() : nullptr);
     return contacts;
 }
 
@@ -107,10 +111,12 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
     const std::uint32_t n = p.count;
     const bool had_rotation = input.rotation_laws && pairs.rotation_history.size() > 0,
                had_internal = input.internal && pairs.internal.size() > 0;
-    const std::uint32_t contacts = save(pairs, had_rotation, had_internal);
+    const Domain& domain = input.domain;
+    const bool has_images = domain.has_images();
+    const std::uint32_t contacts =
+        save(pairs, particle_view(domain, p), had_rotation, had_internal, has_images);
     sort(input, p);
 
-    const Domain& domain = input.domain;
     const detail::Search<Backend> search{
         .grid = domain.grid,
         .position = p.position.data(),
@@ -127,14 +133,18 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         .rows = {p.position.data(), p.velocity.data(), n, domain, scratch.data()},
         .clump_of = input.clump_of,
         .id = p.id.data(),
-        .ghost = p.ghost.size() > 0 ? p.ghost.data() : nullptr};
+        .ghost = p.ghost.size() > 0 ? p.ghost.data() : nullptr,
+        .has_images = has_images,
+        .short_axis = {domain.is_short(0) ? 1 : 0, domain.is_short(1) ? 1 : 0, domain.is_short(2) ? 1 : 0}};
     counts.resize(n);
     pairs.start.resize(n + 1);
     // The histories have been saved. Their memory keeps the partners that are found.
     static_assert(sizeof(Float4) % sizeof(std::uint32_t) == 0);
     const detail::FoundPartners found{
         reinterpret_cast<std::uint32_t*>(pairs.history.data()),
-        static_cast<std::uint32_t>(pairs.history.bytes() / sizeof(std::uint32_t) / std::max(n, 1u))};
+        has_images
+            ? 0
+            : static_cast<std::uint32_t>(pairs.history.bytes() / sizeof(std::uint32_t) / std::max(n, 1u))};
     par::for_each(on, n, detail::CountPairs<Backend>{search, counts.data(), found});
     // Pair indices have 31 bits. The exact sum is computed only if the bound n * maximum exceeds the limit.
     const double bound = n * static_cast<double>(par::largest(on, n, detail::AsFloat{counts.data()}));
@@ -142,17 +152,18 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
         throw TooManyPairs();
     pairs.count = static_cast<std::uint32_t>(par::exclusive_scan(on, counts.data(), pairs.start.data(), n));
     pairs.i.resize(pairs.count), pairs.j.resize(pairs.count);
-    pairs.in_contact.resize(pairs.count);
+    pairs.in_contact.resize(pairs.count), pairs.image.resize(has_images ? pairs.count : 0);
     if (input.rotation_laws) pairs.rotation_history.resize(pairs.count);
     if (input.law_of != nullptr) pairs.law.resize(pairs.count);
     if (input.internal) pairs.internal.resize(pairs.count);
 
     constexpr bool lists_others = Pairs<Backend>::stores_all_loads;
     if constexpr (lists_others) par::fill(on, counts.data(), n, 0u);
-    par::for_each(on, n,
-                  detail::FillPairs<Backend>{search, found, pairs.start.data(), pairs.i.data(),
-                                             pairs.j.data(), lists_others ? counts.data() : nullptr,
-                                             pairs.law.data(), input.law_of, input.materials});
+    par::for_each(
+        on, n,
+        detail::FillPairs<Backend>{search, found, pairs.start.data(), pairs.i.data(), pairs.j.data(),
+                                   lists_others ? counts.data() : nullptr, pairs.law.data(), input.law_of,
+                                   input.materials, has_images ? pairs.image.data() : nullptr});
     if constexpr (lists_others) {
         pairs.other_start.resize(n + 1), pairs.other.resize(pairs.count);
         par::exclusive_scan(on, counts.data(), pairs.other_start.data(), n);
@@ -179,7 +190,8 @@ void Neighbours<Backend>::find(const SearchInput& input, Particles<Backend>& p, 
                       saved.data(), had_rotation ? saved_rotation.data() : nullptr, new_index.data(),
                       pairs.start.data(), pairs.j.data(), pairs.history.data(),
                       input.rotation_laws ? pairs.rotation_history.data() : nullptr, pairs.in_contact.data(),
-                      had_internal ? saved_internal.data() : nullptr, pairs.internal.data()});
+                      had_internal ? saved_internal.data() : nullptr, pairs.internal.data(), domain.grid,
+                      p.position.data(), has_images ? saved_apart.data() : nullptr, pairs.image.data()});
 }
 
 }  // namespace hilda::granular

@@ -17,6 +17,8 @@ struct SaveContacts {
     std::uint32_t* count;  ///< number of contacts that are saved
     SavedContact* to;      ///< nullptr: the contacts are only counted
     Float4 *rotation, *internal;
+    ParticleView particles;
+    Difference* apart;  ///< nullptr: the pairs have no images
 
     HILDA_HD void operator()(std::uint32_t number) const
     {
@@ -32,6 +34,8 @@ struct SaveContacts {
             to[k] = {pairs.i[n], pairs.j[n], u.x, u.y, u.z, u.w};
             if (rotation != nullptr) rotation[k] = pairs.rotation_history[n];
             if (internal != nullptr) internal[k] = pairs.internal[n];
+            if (apart != nullptr && (pairs.j[n] & PairView::boundary_bit) == 0)
+                apart[k] = pair_difference(particles, pairs, n);
             ++k;
         }
     }
@@ -39,7 +43,7 @@ struct SaveContacts {
 
 /// Restores a saved history in the new list. Vectors change their sign if the order of the two particles is
 /// reversed; the internal variables are numbers and do not. A history whose pair is not in the new list is
-/// dropped.
+/// dropped. The images of a pair differ in the difference of the positions, which the search does not change.
 struct RestoreContact {
     const SavedContact* saved;
     const Float4* saved_rotation;
@@ -49,6 +53,10 @@ struct RestoreContact {
     std::uint8_t* in_contact;
     const Float4* saved_internal;
     Float4* internal;
+    CellGrid grid;
+    const Position* position;
+    const Difference* saved_apart;  ///< nullptr: the pairs have no images
+    const std::uint8_t* image;
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
@@ -70,7 +78,7 @@ struct RestoreContact {
                              std::uint32_t k) const
     {
         for (std::uint32_t n = start[a]; n < start[a + 1]; ++n) {
-            if (j[n] != b) continue;
+            if (j[n] != b || (saved_apart != nullptr && !is_image(a, b, n, sign, k))) continue;
             history[n] = {sign * s.x, sign * s.y, sign * s.z, s.w};
             in_contact[n] = 1;
             if (rotation_history != nullptr) {
@@ -81,6 +89,14 @@ struct RestoreContact {
             return true;
         }
         return false;
+    }
+    HILDA_HD bool is_image(std::uint32_t a, std::uint32_t b, std::uint32_t n, float sign,
+                           std::uint32_t k) const
+    {
+        if ((b & PairView::boundary_bit) != 0) return true;
+        const Difference d = difference(grid, position[a], position[b], image[n]), before = saved_apart[k];
+        return sign > 0 ? d.x == before.x && d.y == before.y && d.z == before.z
+                        : d.x == -before.x && d.y == -before.y && d.z == -before.z;
     }
 };
 

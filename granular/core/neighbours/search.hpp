@@ -12,7 +12,7 @@
 
 namespace hilda::granular::detail {
 
-/// Calls f(j) in a fixed order for the partners of particle k whose surfaces are closer than the skin:
+/// Calls f(j), or f(j, image), in a fixed order for the partners of particle k whose surfaces are closer than the skin:
 /// particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no pair, nor are
 /// two particles of a clump.
 ///
@@ -32,6 +32,8 @@ struct Search {
     SearchedRows<Backend> rows;
     const std::uint32_t *clump_of, *id;  ///< see AssignCell
     const std::uint8_t* ghost;           ///< see Particles; nullptr if there are none
+    bool has_images;                     ///< see Domain
+    std::int32_t short_axis[3];          ///< 1: several images are tested along this axis; see Domain
 
     /// The partners of particle k among the particles from `first` to `last` - 1. If k is small, all of them
     /// have the same periodic image.
@@ -96,6 +98,46 @@ struct Search {
                 row(0, end > nx ? end - nx : 0);
             }
     }
+    /// Particle k and all images of the other particles in the cells within its reach. A large particle finds
+    /// all small ones. Of two particles of the same kind that with the lower index finds the other one.
+    template <class F>
+    HILDA_HD void search_images(std::uint32_t k, const F& f) const
+    {
+        const Position at = position[k];
+        const std::uint32_t cell = at.cell, replica = species[k].replica;
+        const float radius_and_skin = velocity[k].w + skin;
+        const bool fixed = omega[k].w == 0, is_large = velocity[k].w > small;
+        const float reach = radius_and_skin + (is_large ? largest : small);
+        const Cells x = cells_within(reach, grid.x_of(cell), 0), y = cells_within(reach, grid.y_of(cell), 1),
+                    z = cells_within(reach, grid.z_of(cell), 2);
+        const std::int32_t nx = grid.cells[0], ny = grid.cells[1], nz = grid.cells[2];
+        const auto test = [&](std::uint32_t j, std::int32_t a, std::int32_t b, std::int32_t c) {
+            const std::uint8_t image = Image::pack(a, b, c);
+            const Difference d = difference(grid, at, position[j], image);
+            const float dx = unit * static_cast<float>(d.x), dy = unit * static_cast<float>(d.y),
+                        dz = unit * static_cast<float>(d.z), limit = radius_and_skin + velocity[j].w;
+            if (dx * dx + dy * dy + dz * dz < limit * limit) f(j, image);
+        };
+        const auto images = [&](std::uint32_t j) {
+            if (j == k || (fixed && omega[j].w == 0)) return;
+            if (velocity[j].w > small ? !(is_large && j > k) : !(is_large || j > k)) return;
+            const std::uint32_t other = position[j].cell;
+            const std::int32_t a_0 = nearest_period(grid.x_of(cell), grid.x_of(other), grid, 0),
+                               b_0 = nearest_period(grid.y_of(cell), grid.y_of(other), grid, 1),
+                               c_0 = nearest_period(grid.z_of(cell), grid.z_of(other), grid, 2);
+            const std::int32_t m = short_axis[0], n = short_axis[1], o = short_axis[2];
+            for (std::int32_t c = o != 0 ? -1 : c_0; c <= (o != 0 ? 1 : c_0); ++c)
+                for (std::int32_t b = n != 0 ? -1 : b_0; b <= (n != 0 ? 1 : b_0); ++b)
+                    for (std::int32_t a = m != 0 ? -1 : a_0; a <= (m != 0 ? 1 : a_0); ++a) test(j, a, b, c);
+        };
+        for (std::int32_t c = z.first; c < z.first + z.count; ++c)
+            for (std::int32_t b = y.first; b < y.first + y.count; ++b)
+                for (std::int32_t a = x.first; a < x.first + x.count; ++a) {
+                    const std::uint32_t at_cell =
+                        ((replica * nz + wrapped(c, nz)) * ny + wrapped(b, ny)) * nx + wrapped(a, nx);
+                    for (std::uint32_t j = cell_start[at_cell]; j < cell_start[at_cell + 1]; ++j) images(j);
+                }
+    }
     /// range() without the particle itself
     template <class F>
     HILDA_HD void range_without(std::uint32_t k, std::uint32_t first, std::uint32_t last, const F& f) const
@@ -108,20 +150,22 @@ struct Search {
     HILDA_HD void operator()(std::uint32_t k, const F& f) const
     {
         if (ghost != nullptr && ghost[k] != 0)
-            return find(k, [&](std::uint32_t other) {
-                if ((other & PairView::boundary_bit) == 0 && ghost[other] == 0) f(other);
+            return find(k, [&](std::uint32_t other, std::uint8_t image = Image::none) {
+                if ((other & PairView::boundary_bit) == 0 && ghost[other] == 0) f(other, image);
             });
         const std::uint32_t own = clump_of == nullptr ? no_clump : clump_of[id[k]];
         if (own == no_clump) return find(k, f);
-        find(k, [&](std::uint32_t other) {
-            if ((other & PairView::boundary_bit) != 0 || clump_of[id[other]] != own) f(other);
+        find(k, [&](std::uint32_t other, std::uint8_t image = Image::none) {
+            if ((other & PairView::boundary_bit) != 0 || clump_of[id[other]] != own) f(other, image);
         });
     }
 
     template <class F>
     HILDA_HD void find(std::uint32_t k, const F& f) const
     {
-        if (velocity[k].w > small)
+        if (has_images)
+            search_images(k, f);
+        else if (velocity[k].w > small)
             search_reach(k, f);
         else
             search_half(k, f);
@@ -166,7 +210,7 @@ struct Search {
 };
 
 /// The partners that CountPairs finds, up to `width` of each particle, so that FillPairs does not search
-/// again
+/// again; width is 0 where partners have images
 struct FoundPartners {
     std::uint32_t* partner;
     std::uint32_t width;
@@ -182,7 +226,7 @@ struct CountPairs {
     {
         std::uint32_t n = 0;
         std::uint32_t* const to = found.partner + std::size_t{k} * found.width;
-        search(k, [&](std::uint32_t other) {
+        search(k, [&](std::uint32_t other, std::uint8_t = Image::none) {
             if (n < found.width) to[n] = other;
             ++n;
         });
@@ -204,7 +248,7 @@ std::uint64_t sum(Backend on, const std::uint32_t* numbers, std::uint32_t n)
     return std::accumulate(all.begin(), all.end(), std::uint64_t{0});
 }
 
-/// Writes the row of a particle: partners and laws.
+/// Writes the row of a particle: partners, images and laws.
 template <class Backend>
 struct FillPairs {
     Search<Backend> search;
@@ -215,6 +259,7 @@ struct FillPairs {
     std::uint8_t* law;
     const std::uint8_t* law_of;  ///< nullptr if there is a single law
     std::uint32_t materials;
+    std::uint8_t* image;  ///< nullptr: the partners have no images
 
     HILDA_HD void operator()(std::uint32_t k) const
     {
@@ -223,8 +268,9 @@ struct FillPairs {
             return s.boundary[s.boundary_of(other & ~PairView::boundary_bit)];
         };
         std::uint32_t n = start[k];
-        const auto put = [&](std::uint32_t other) {
+        const auto put = [&](std::uint32_t other, std::uint8_t image_of_other = Image::none) {
             i[n] = k, j[n] = other;
+            if (image != nullptr) image[n] = image_of_other;
             const bool particle = (other & PairView::boundary_bit) == 0;
             if (particle && counts_as_j != nullptr) fetch_add(&counts_as_j[other], 1);
             if (law_of != nullptr)

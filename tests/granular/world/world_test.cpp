@@ -372,10 +372,10 @@ TEST_CASE("a periodic domain that is too narrow is refused with the width that i
         world.add(p);
         world.step(1);
     };
-    CHECK_THROWS_WITH(insert(0.005),
-                      "domain: must be at least 0.0066007 m wide along x, a periodic axis: three "
-                      "times the largest diameter and the skin, got 0.005");
-    insert(0.0066007);
+    CHECK_THROWS_WITH(insert(0.00215),
+                      "domain: must be at least 0.0022002 m wide along x, a periodic axis: the largest "
+                      "diameter and the skin, got 0.00215");
+    insert(0.0022002);
 }
 
 }  // namespace world_test

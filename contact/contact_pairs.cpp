@@ -66,7 +66,7 @@ void ContactPairs::index()
     const auto places_of = [](const std::vector<int>& list) {
         std::vector<int> places;
         for (std::size_t k = 0; k < list.size(); ++k) {
-            const auto at = static_cast<std::size_t>(list[k] + 1);
+            const auto at = static_cast<std::size_t>(list[k]) + 1;
             if (at >= places.size()) places.resize(at + 1, -1);
             places[at] = static_cast<int>(k);
         }
@@ -77,7 +77,7 @@ void ContactPairs::index()
 
 int ContactPairs::place(const std::vector<int>& places, int body)
 {
-    const auto at = static_cast<std::size_t>(body + 1);
+    const auto at = static_cast<std::size_t>(body) + 1;
     return at < places.size() ? places[at] : -1;
 }
 

@@ -25,8 +25,8 @@ struct Settings {
     double atol = 0;      ///< adaptive schemes: absolute error tolerance [m, m/s; 1, 1/s]; 0: equal to rtol
     double max_step = 0;  ///< adaptive schemes: longest internal step [s]; 0: no limit
     double longest_step() const { return max_step > 0 ? max_step : std::numeric_limits<double>::infinity(); }
-    /// Whether each step computes the multipliers, if the scheme can do without them. Otherwise they are those
-    /// of Integrator::set_multipliers().
+    /// Whether each step computes the multipliers, if the scheme can do without them. Otherwise they are
+    /// those of Integrator::set_multipliers().
     bool multipliers = true;
     /// Adaptive schemes call this function between their internal steps and throw Interrupted if it returns
     /// true.

@@ -86,8 +86,8 @@ public:
     /// NaN counts as larger than any number.
     virtual PositionError position_error(const State& x) const;
 
-    /// The joints, if the constraint rows are those of a tree of joints; otherwise the reason. Constant from a
-    /// start on. The default is for systems that do not describe their joints.
+    /// The joints, if the constraint rows are those of a tree of joints; otherwise the reason. Constant from
+    /// a start on. The default is for systems that do not describe their joints.
     virtual const Tree& tree() const;
 
     // Derivatives for exact Newton matrices. Schemes with a frozen matrix do not use them. The defaults of

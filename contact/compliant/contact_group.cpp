@@ -98,7 +98,7 @@ void ContactGroup::find(const std::vector<Motion>& body, std::span<const double>
     if (!of.each_two) add(of.second, shape_j);
     const auto add_pair = [&](int a, int b) {
         if (!of.has(a, b)) return;
-        const int i = of.each_two ? a : a, j = of.each_two ? b : firsts + b;
+        const int i = a, j = of.each_two ? b : firsts + b;
         const auto ball = [&](int item) {
             return Ball{centre[static_cast<size_t>(item)], reach[static_cast<size_t>(item)]};
         };

@@ -9,8 +9,8 @@ namespace hilda::dae {
 
 namespace {
 
-/// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start. The state
-/// counts its whole turns from step to step, also in the internal steps of adaptive schemes.
+/// The joint angle of a hinge: rotation of body j relative to body i about the axis since the start. The
+/// state counts its whole turns from step to step, also in the internal steps of adaptive schemes.
 class AngleOutput final : public Output {
 public:
     explicit AngleOutput(std::shared_ptr<TurnCounter> hinge) : hinge(std::move(hinge)) {}

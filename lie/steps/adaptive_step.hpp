@@ -15,9 +15,9 @@
 
 namespace hilda::lie {
 
-/// Internal steps of a method, chosen from rtol and atol. Method is RungeKuttaStep, TreeRungeKuttaStep or RadauStep. step()
-/// evaluates the continuous extension at its end, so that the output instants do not affect the internal
-/// steps.
+/// Internal steps of a method, chosen from rtol and atol. Method is RungeKuttaStep, TreeRungeKuttaStep or
+/// RadauStep. step() evaluates the continuous extension at its end, so that the output instants do not
+/// affect the internal steps.
 ///
 /// The last internal step contains the time of the node or ends there. Its stages, its end and the controller
 /// are in State::history of the node: a run continues from there with the same digits. The poses and

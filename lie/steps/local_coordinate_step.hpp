@@ -26,8 +26,8 @@ protected:
     int variables() const { return 12 * bodies; }
     /// Makes x_n the origin of the variables, before the first slope of a step from there.
     void begin_stages() { theta.setZero(); }
-    /// Square of the Euclidean norm of an error of the variables, divided by the tolerances of (r, θ, ṙ, ω̄) of
-    /// the bodies
+    /// Square of the Euclidean norm of an error of the variables, divided by the tolerances of (r, θ, ṙ, ω̄)
+    /// of the bodies
     double square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error) const
     {
         return error.cwiseQuotient(tolerance).squaredNorm();

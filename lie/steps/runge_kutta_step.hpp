@@ -9,8 +9,8 @@
 
 namespace hilda::lie {
 
-/// One step of a tableau in the variables of Coordinates: LocalCoordinateStep with projection, or TreeStep. As
-/// an integrator it takes steps of the given length.
+/// One step of a tableau in the variables of Coordinates: LocalCoordinateStep with projection, or TreeStep.
+/// As an integrator it takes steps of the given length.
 template <class Coordinates>
 class ExplicitStep : public Coordinates {
 public:

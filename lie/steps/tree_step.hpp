@@ -35,8 +35,8 @@ protected:
     void set_slope(const State& x, Eigen::Ref<Eigen::VectorXd> slope) const;
     /// The poses and velocities of x are those of x_n changed by d, the increments of (u, w).
     void place(State& x, const Eigen::VectorXd& d);
-    /// Square of the Euclidean norm of an error of the variables as one of (r, θ, ṙ, ω̄) of the bodies, divided
-    /// by their tolerances
+    /// Square of the Euclidean norm of an error of the variables as one of (r, θ, ṙ, ω̄) of the bodies,
+    /// divided by their tolerances
     double square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error) const;
 
     void assemble_once(const State&) {}

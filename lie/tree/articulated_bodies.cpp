@@ -78,7 +78,7 @@ void ArticulatedBodies::eliminate(int k)
     Work& w = work[k];
     if (joint.kind == Kind::free) return;
     if (joint.kind == Kind::hinge || joint.kind == Kind::slide) {
-        double D, u;
+        double D = 0, u = 0;
         if (joint.kind == Kind::hinge) {
             w.U_F = w.B * w.axis;
             w.U_M = w.C * w.axis;

@@ -82,8 +82,8 @@ void JointCoordinates::place(const Eigen::Ref<const Eigen::VectorXd>& u,
             continue;
         }
         const Motion& i = motion(x, joint.before);
-        // The rates are added in the frame of the body: start() then finds them again, without a rounding error
-        // of the same sign in each step.
+        // The rates are added in the frame of the body: start() then finds them again, without a rounding
+        // error of the same sign in each step.
         const Vec3 omega_i = i.A * i.omega_bar;
         Vec3 d = i.A * joint.s_bar_i;  // from r_i to Q
         Vec3 rdot = i.rdot;

@@ -32,9 +32,9 @@ constexpr double min_progress = 1e-9;
 
 // IDA bounds the local error of a step, and a run accumulates thousands of steps. IDA therefore gets a tenth
 // of the tolerance of the caller. Below min_tolerance rounding determines the step size: IDA takes ten times
-// as many steps and the error does not decrease. IDA starts again with order 1 behind each zero of a switching
-// function, and the errors of these steps have one sign: with switching functions the fraction is a third, which
-// takes 1.1 to 1.2 times the steps and reduces the error by factors of 2 to 12.
+// as many steps and the error does not decrease. IDA starts again with order 1 behind each zero of a
+// switching function, and the errors of these steps have one sign: with switching functions the fraction is a
+// third, which takes 1.1 to 1.2 times the steps and reduces the error by factors of 2 to 12.
 constexpr double step_fraction = 0.1, step_fraction_with_switches = 0.033, min_tolerance = 2e-14;
 
 // Newton tolerance, as a fraction of the error tolerance of a step. IDA's default of 0.33 disturbs the error

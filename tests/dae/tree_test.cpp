@@ -188,7 +188,7 @@ TEST_CASE("schemes on a tree have their orders and keep the joints", "[dae][tree
     };
     CHECK(order("tree-euler-1", 1e-4) == Approx(1).margin(0.05));
     CHECK(order("tree-rk-4", 4e-3) == Approx(4).margin(0.15));
-    // The next terms of the error are not small yet where it is above rounding; the spinning top has both sides.
+    // The next terms of the error are not small where it is above rounding; the spinning top has both sides.
     CHECK(order("tree-dp-5", 8e-3, 4) == Approx(5).margin(0.5));
     CHECK(order("tree-dop853", 4e-2) == Approx(8).margin(0.6));
 }

@@ -13,8 +13,8 @@
 namespace hilda::tests {
 
 /// Bodies with a joint to the ground or to a body before them, by turns revolute, spherical, translational
-/// and fixed; every seventh body is free. Body numbers and the order of i and j do not follow the tree. Springs
-/// with dampers connect bodies that have no joint. `x` is a consistent start in motion.
+/// and fixed; every seventh body is free. Body numbers and the order of i and j do not follow the tree.
+/// Springs with dampers connect bodies that have no joint. `x` is a consistent start in motion.
 inline void random_tree(int bodies, unsigned seed, dae::Model& model, lie::State& x)
 {
     Random random(seed);

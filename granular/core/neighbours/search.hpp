@@ -12,9 +12,9 @@
 
 namespace hilda::granular::detail {
 
-/// Calls f(j), or f(j, image), in a fixed order for the partners of particle k whose surfaces are closer than the skin:
-/// particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no pair, nor are
-/// two particles of a clump.
+/// Calls f(j), or f(j, image), in a fixed order for the partners of particle k whose surfaces are closer
+/// than the skin: particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are
+/// no pair, nor are two particles of a clump.
 ///
 /// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
 /// finds all small ones and the large ones with higher indices in the cells within its reach.

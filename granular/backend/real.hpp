@@ -10,8 +10,10 @@
 
 #ifdef __CUDACC__
 #define HILDA_HD __host__ __device__
+#define HILDA_ALWAYS_INLINE __forceinline__
 #else
 #define HILDA_HD
+#define HILDA_ALWAYS_INLINE [[gnu::always_inline]] inline
 #endif
 
 namespace hilda::granular {

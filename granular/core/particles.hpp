@@ -161,8 +161,8 @@ struct CellGrid {
 ///
 /// The arithmetic is modulo 2^32. The result is exact if the difference is below 2^31 units in magnitude,
 /// which is at least four cell widths.
-HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
-                                        std::int32_t j, const CellGrid& g, int axis)
+HILDA_HD HILDA_ALWAYS_INLINE std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
+                                                     std::int32_t j, const CellGrid& g, int axis)
 {
     const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
     if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return wrapped_difference(i, j);
@@ -173,7 +173,7 @@ HILDA_HD inline std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j
 struct Difference {
     std::int32_t x, y, z;
 };
-HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, const Position& j)
+HILDA_HD HILDA_ALWAYS_INLINE Difference difference(const CellGrid& g, const Position& i, const Position& j)
 {
     return {difference(g.x_of(i.cell), g.x_of(j.cell), i.x, j.x, g, 0),
             difference(g.y_of(i.cell), g.y_of(j.cell), i.y, j.y, g, 1),

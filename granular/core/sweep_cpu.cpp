@@ -224,10 +224,7 @@ struct Sweep : detail::ContactPacks {
         Pack overlaps(0.f);
         const std::uint32_t last = arrays.start[end];
         for (std::uint32_t first = arrays.start[begin]; first < last; first += Hits::most) {
-            if (pairs.image == nullptr)
-                find_hits<false>(first, std::min(first + Hits::most, last), hits);
-            else
-                find_hits<true>(first, std::min(first + Hits::most, last), hits);
+            find_hits(first, std::min(first + Hits::most, last), hits);
             evaluate_hits(hits, overlaps);
             add_hits<Float8>(hits, begin, end_of_range, hits.load, pairs.load, sum_i, plan.sum_j.data());
             if (rotates)
@@ -260,8 +257,18 @@ struct Sweep : detail::ContactPacks {
     // registers.
 
     /// Lists the contacts among the pairs from `begin` on; clears those that have ended.
-    template <bool with_images>
     [[gnu::noinline, gnu::flatten]] void find_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
+    {
+        if (pairs.image != nullptr) return find_hits_with_images(begin, end, hits);
+        list_hits<false>(begin, end, hits);
+    }
+    [[gnu::noinline, gnu::flatten]] void find_hits_with_images(std::uint32_t begin, std::uint32_t end,
+                                                               Hits& hits) const
+    {
+        list_hits<true>(begin, end, hits);
+    }
+    template <bool with_images>
+    void list_hits(std::uint32_t begin, std::uint32_t end, Hits& hits) const
     {
         hits.count = hits.stored_count = 0;
         for (std::uint32_t first = begin; first < end; first += lanes) {

@@ -12,9 +12,9 @@
 
 namespace hilda::granular::detail {
 
-/// Calls f(j), or f(j, image), in a fixed order for the partners of particle k whose surfaces are closer
-/// than the skin: particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are
-/// no pair, nor are two particles of a clump.
+/// Calls f(j), or f(j, image), in a fixed order for the partners of particle k whose surfaces are closer than
+/// the skin: particles, then the numbers of surfaces with PairView::boundary_bit. Two fixed bodies are no
+/// pair, nor are two particles of a clump.
 ///
 /// A small particle finds the small ones in the following half of the neighbouring cells. A large particle
 /// finds all small ones and the large ones with higher indices in the cells within its reach.
@@ -99,9 +99,10 @@ struct Search {
             }
     }
     /// Particle k and all images of the other particles in the cells within its reach. A large particle finds
-    /// all small ones. Of two particles of the same kind that with the lower index finds the other one.
+    /// all small ones. Of two particles of the same kind that with the lower index finds the other one. Not
+    /// inlined, so that the code of other domains stays fast.
     template <class F>
-    HILDA_HD void search_images(std::uint32_t k, const F& f) const
+    [[gnu::noinline]] HILDA_HD void search_images(std::uint32_t k, const F& f) const
     {
         const Position at = position[k];
         const std::uint32_t cell = at.cell, replica = species[k].replica;

@@ -53,9 +53,11 @@ std::string cube(int n, double v, bool as_group, double spacing = 2.2 * R)
     tests::Random random(7);
     std::string bodies, contacts = R"({"name": "floor", "body_i": "all", "body_j": "ground", "surface_i": )" +
                                    ball + R"(, "surface_j": {"type": "plane"}, )" + laws + '}';
-    for (int k = 0; k < n * n * n; ++k)
+    for (int k = 0; k < n * n * n; ++k) {
+        const int row = k / n, layer = row / n;
         bodies += (k > 0 ? ", " : "") +
-                  body(k, spacing * lie::Vec3(k % n, k / n % n, 0.6 + k / n / n), v * random.vector());
+                  body(k, spacing * lie::Vec3(k % n, row % n, 0.6 + layer), v * random.vector());
+    }
     if (as_group)
         contacts += R"(, {"name": "balls", "bodies": "all", "surface": )" + ball + ", " + laws + '}';
     else

@@ -39,6 +39,7 @@ const bool registered_tree_euler_1 =
                                  .order_lambda = 1,
                                  .formulation = "tree",
                                  .unknowns = "none",
+     .uses = {"--linear-solver"},  // for the multipliers
                                  .source = "Featherstone (1983)",
                                  .needs_tree = true,
                                  .supports = {Feature::history}});

@@ -24,7 +24,6 @@ public:
     TreeStep(const System& model, const Settings& settings);
 
     void set_multipliers(State& node) override;
-    void choose_pivots(const State&, double) override {}
 
 protected:
     /// Number of the variables (u, w)

@@ -27,7 +27,7 @@ public:
 
     /// Sets r̈ and ω̄̇ of all bodies, and q̈ of all joints in their order: the acceleration of the angle or
     /// the displacement; for a ball the derivative of the angular velocity relative to the body before, in
-    /// the frame of the body; for a free body r̈ and ω̄̇. The positions and velocities of x satisfy the joints.
+    /// the frame of the body; for a free body r̈ and ω̄̇. x satisfies the joints.
     void solve(State& x, const Loads& loads, Eigen::VectorXd& qddot);
 
 private:

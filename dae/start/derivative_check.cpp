@@ -252,23 +252,20 @@ std::vector<std::string> wrong_derivatives(const Model& model, const lie::State&
         if (c->algebraic_variables() == 0 && !Model::inactive(*c, x) && out.is_next(typeid(constraint)))
             ConstraintCheck(*c, model.arguments(*c, x), out.lines).run();
     }
-    if (model.forces().empty()) return std::move(out.lines);
+    if (model.forces().empty() && model.near_forces().empty()) return std::move(out.lines);
     lie::LoadVariation work;
     work.plus = work.minus = lie::Loads(model.bodies());
     const State near = work.x = moved(x);
-    for (const auto& f : model.forces()) {
-        const Force& force = *f;
+    const auto compare = [&](const Force& force) {
         force.check_derivatives(x, out);
         if (out.is_next(typeid(force))) check_loads(force, near, work, out.lines);
-    }
-    for (const auto& group : model.near_forces().all_groups()) {
-        bool is_checked = false;
-        model.near_forces().visit(x, [&](const Force& force, int number) {
-            if (is_checked || model.near_forces().group_of(number).first != group.get()) return;
-            is_checked = true;
-            force.check_derivatives(x, out);
-            if (out.is_next(typeid(force))) check_loads(force, near, work, out.lines);
-        });
+    };
+    for (const auto& f : model.forces()) compare(*f);
+    const NearForces& groups = model.near_forces();
+    for (std::size_t g = 0; g < groups.all_groups().size(); ++g) {
+        int pair = 0;  // the first one; it need not be near
+        while (!groups.all_groups()[g]->has_pair(pair)) ++pair;
+        compare(*groups.force(groups.first_number(g) + pair));
     }
     return std::move(out.lines);
 }

@@ -2,7 +2,7 @@
 /// Functions of surfaces and contact laws that contradict differences.
 
 #include "contact/derivative_check.hpp"
-#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/contact_group.hpp"
 #include "contact/evolving/contact.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/sphere.hpp"
@@ -140,6 +140,29 @@ TEST_CASE("functions of a normal law that contradict differences are named", "[c
     one_finding(with({.energy = 2}), ", differences of energy have ");
     one_finding(with({.of_curvature = 1000}),
                 "force depends on the curvature, but needs_curvature() is false");
+}
+
+TEST_CASE("the laws of a group of contacts are compared as well, also if no pair is near", "[contact][start]")
+{
+    for (const double distance : {2 * R, 100 * R}) {
+        dae::Model model;
+        lie::State x;
+        for (const char* name : {"a", "b"}) {
+            model.add({.name = name, .m = 1, .J_bar = 0.4 * R * R * Mat3::Identity()});
+            x.body.emplace_back().r.x() = model.bodies() * distance;
+        }
+        ContactPairs pairs;
+        pairs.first = pairs.second = {0, 1};
+        pairs.each_two = pairs.is_group = true;
+        pairs.index();
+        model.load(std::make_unique<ContactGroup>("balls", model, pairs, ball({}), ball({}),
+                                                  std::make_shared<Spring>(LawFactors{.stiffness = 0.5}),
+                                                  frictionless()));
+        const std::vector<std::string> found = start(model, x).warnings;
+        CAPTURE(distance, found);
+        REQUIRE(found.size() == 1);
+        CHECK_THAT(found[0], Contains("contact 'balls: a-b'") && Contains("stiffness is 5e+04"));
+    }
 }
 
 TEST_CASE("springs of a friction law that contradict its loads are named", "[contact][start]")

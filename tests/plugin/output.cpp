@@ -15,10 +15,7 @@ public:
     {
         return {{"omega", "rad/s", "magnitude of the angular velocity"}};
     }
-    void values(const State& x, const double*, double* out) const override
-    {
-        out[0] = x.body[body].omega_bar.norm();
-    }
+    void values(const State& x, double* out) const override { out[0] = x.body[body].omega_bar.norm(); }
 
 private:
     const int body;

@@ -6,6 +6,7 @@
 #include "io/json_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -18,13 +19,14 @@ namespace {
 // 2^53 - 1. The value 2^53 may result from rounding 2^53 + 1.
 constexpr double largest_exact_integer = 9007199254740991;
 
-constexpr std::size_t usual_size = 4;  // of lists and objects
-
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_word(char c)
 {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '+' || c == '-';
 }
+
+/// Whether a character of a string stands for itself
+bool is_plain(char c) { return c >= ' ' && c != '"' && c != '\\' && static_cast<unsigned char>(c) < 0x80; }
 
 std::string utf8(unsigned code)
 {
@@ -137,8 +139,9 @@ private:
                 continue;
             }
             if (static_cast<unsigned char>(c) < ' ') invalid("a control character must be escaped");
-            const std::size_t n = utf8_length(text.substr(at));
-            if (n == 0) invalid("ill-formed UTF-8");
+            std::size_t n = 0;
+            while (at + n < text.size() && is_plain(text[at + n])) ++n;
+            if (n == 0 && (n = utf8_length(text.substr(at))) == 0) invalid("ill-formed UTF-8");
             s += text.substr(at, n);
             at += n;
         }
@@ -181,7 +184,7 @@ private:
     Json list()
     {
         Json::List all;
-        all.reserve(usual_size);
+        all.reserve(expected_size[path.size()]);
         open({&all, nullptr});
         if (!take(']')) {
             do {
@@ -191,14 +194,14 @@ private:
             } while (take(','));
             if (!take(']')) unexpected("']' or ','");
         }
-        path.pop_back();
+        close(all.size());
         return Json(std::move(all));
     }
 
     Json object()
     {
         Json::Object all;
-        all.reserve(usual_size);
+        all.reserve(expected_size[path.size()]);
         open({nullptr, &all});
         if (!take('}')) {
             do {
@@ -214,7 +217,7 @@ private:
             } while (take(','));
             if (!take('}')) unexpected("'}' or ','");
         }
-        path.pop_back();
+        close(all.size());
         check_duplicates(all);
         return Json(std::move(all));
     }
@@ -258,6 +261,11 @@ private:
         path.push_back(container);
         ++at;
         skip_blanks();
+    }
+    void close(std::size_t size)
+    {
+        path.pop_back();
+        expected_size[path.size()] = static_cast<std::uint8_t>(std::min(size, largest_expected));
     }
 
     /// JSON pointer of the value that is being read. It is not yet an element of its list.
@@ -342,6 +350,9 @@ private:
     const std::size_t longest_string;
     std::size_t at = 0, values = 0;
     std::vector<Open> path;
+    /// Sizes of the last lists and objects of each depth, for which memory is reserved
+    static constexpr std::size_t largest_expected = 16;
+    std::array<std::uint8_t, JsonSource::max_depth + 1> expected_size = {};
 };
 
 }  // namespace

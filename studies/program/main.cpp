@@ -5,6 +5,7 @@
 #include "studies/program/command_line.hpp"
 
 #include <dlfcn.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <array>
@@ -39,11 +40,22 @@ void limit_blas_threads(char** argv)
     execv(program.data(), argv);  // returns on failure only: the program then goes on as it is
 }
 
+/// Keeps freed memory for later allocations of the process. The C library otherwise returns large blocks to
+/// the system, which clears each page again: a sixth of the time to read a model of 100 000 bodies.
+void keep_freed_memory()
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 {
     limit_blas_threads(argv);
+    keep_freed_memory();
     return hilda::io::run_program([&] {
         if (!keeps_denormals())
             throw std::runtime_error("a library of this process flushes denormal numbers to zero");

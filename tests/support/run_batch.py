@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a batch of the cases of a test program in one process.
+
+    run_batch.py PROGRAM short|long K N
+
+The cases whose names contain "(long)", or the others, are dealt out to N batches; batch K runs, 1 <= K <= N.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+
+
+def main(program, kind, batch, batches):
+    # The exit code of the list is the number of cases.
+    listed = subprocess.run([program, "--list-test-names-only"], capture_output=True, text=True, check=False).stdout
+    cases = [name for name in listed.splitlines() if name and ("(long)" in name) == (kind == "long")]
+    cases = cases[int(batch) - 1 :: int(batches)]
+    if not cases:
+        return 0
+    with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as file:
+        file.write("\n".join(cases) + "\n")
+        file.flush()
+        done = subprocess.run([program, "--input-file", file.name], stdout=subprocess.PIPE, text=True, check=False)
+    print(done.stdout)
+    if done.returncode != 0:
+        return 1
+    number = re.search(r"in (\d+) test cases?\)", done.stdout)
+    if number is None or int(number[1]) != len(cases):
+        print(f"{len(cases)} cases were to run")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -135,7 +135,7 @@ hilda_install_headers(
     # parts of the solvers, what includes headers of GSL, and co-simulation, which needs the cases of granular
     EXCEPT ${cosim_headers} lie/solver/columns.hpp lie/solver/condensed.hpp lie/solver/condensed_kernels.hpp lie/solver/elimination.hpp
         lie/solver/klu_saddle.hpp
-        lie/solver/saddle_factors.hpp reference/solvers/gsl_errors.hpp)
+        lie/solver/saddle_factors.hpp reference/solvers/gsl_errors.hpp reference/solvers/sundials.hpp)
 install(FILES "${hilda_generated}/hilda/version.hpp" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/hilda/hilda")
 install(FILES "${PROJECT_SOURCE_DIR}/cmake/hildaPlugin.cmake" "${PROJECT_SOURCE_DIR}/cmake/plugin_interface.cpp"
     DESTINATION "${hilda_package_dir}")

@@ -13,7 +13,7 @@ namespace {
 
 using io::Json;
 
-/// Reads an element. Its canonical form has one element for each pair of a group.
+/// Reads an element. Its canonical form has one element for each pair of a group that is read pair by pair.
 void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::set<std::string>& used_names,
                   ReadContact read, Json::List& recorded)
 {
@@ -22,24 +22,23 @@ void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::se
     define_contact(entry);
     const std::string entry_name = dae::unique_name(entry, "contact", used_names);
     const ContactPairs all = read_contact_pairs(entry, to.bodies, model.bodies());
-    bool may_be_group = all.is_group && all.count() > most_single_pairs;
-    for (int number = 0; number < all.numbers(); ++number) {
-        if (!all.has(number)) continue;
+
+    /// Reads the contact of a pair, or of all pairs with the keys that are given. Returns whether it is read.
+    const auto read_pair = [&](int number, bool as_group) {
         const auto [i, j] = all.pair(number);
         dae::ObjectReader o = entry.again();
         const std::string name =
             all.is_group ? ContactPairs::name_of_pair(model, entry_name, i, j) : entry_name;
-        o.record("name", may_be_group ? entry_name : name);
+        o.find("name");
+        o.record("name", as_group ? entry_name : name);
         for (const auto& [key, body] : {std::pair("body_i", i), std::pair("body_j", j)}) {
             const Json* given = o.find(key);
-            if (!may_be_group)
+            if (!as_group)
                 o.record(key, model.body_name(body));
             else if (given != nullptr)
                 o.record(key, *given);
         }
-        o.find("name");
-        if (const Json* given = o.find("bodies"); given != nullptr && may_be_group)
-            o.record("bodies", *given);
+        if (const Json* given = o.find("bodies"); given != nullptr && as_group) o.record("bodies", *given);
         const ContactPair pair = {.name = name,
                                   .i = i,
                                   .j = j,
@@ -50,12 +49,12 @@ void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::se
                                   .surface_i = all.surface_i,
                                   .surface_j = all.surface_j,
                                   .shared = shared,
-                                  .group = may_be_group ? &all : nullptr,
+                                  .group = as_group ? &all : nullptr,
                                   .group_name = entry_name};
-        bool is_complete = false;
+        bool has_group = false;
         o.located([&] {
             try {
-                is_complete = read(o, pair);
+                has_group = read(o, pair);
             } catch (const io::PlacedError&) {
                 throw;
             } catch (const lie::InvalidInput& e) {
@@ -63,24 +62,22 @@ void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::se
                 throw lie::InvalidInput("contact '" + name + "': " + e.what());
             }
         });
-        if (may_be_group && !is_complete) {  // each pair for itself, from the first one
-            if (all.count() > ContactPairs::most_listed)
-                entry.fail(all.each_two ? "bodies" : "body_i",
-                           "a group of contacts of this type may have at most " +
-                               std::to_string(ContactPairs::most_listed) + " pairs of bodies, got " +
-                               std::to_string(all.count()));
-            may_be_group = false;
-            --number;
-            continue;
-        }
+        if (as_group && !has_group) return false;
         to.out.force_place.resize(model.forces().size(), o.place());
         to.out.general_place.resize(model.general_constraints().size(), o.place());
+        if (as_group) model.near_forces().all_groups().back()->place = o.place();
         recorded.push_back(o.finish());
-        if (is_complete) {
-            model.near_forces().all_groups().back()->place = o.place();
-            break;
-        }
-    }
+        return true;
+    };
+
+    if (all.is_group && all.count() > most_single_pairs && read_pair(all.first_number(), true)) return;
+    if (all.count() > ContactPairs::most_listed)
+        entry.fail(all.each_two ? "bodies" : "body_i", "a group of contacts of this type may have at most " +
+                                                           std::to_string(ContactPairs::most_listed) +
+                                                           " pairs of bodies, got " +
+                                                           std::to_string(all.count()));
+    for (int number = 0; number < all.numbers(); ++number)
+        if (all.has(number)) read_pair(number, false);
 }
 
 }  // namespace

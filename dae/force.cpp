@@ -10,12 +10,6 @@ bool Force::is_implicit_in(const lie::Scheme& scheme) const
     return implicit && scheme.supports.contains(lie::Feature::springs);
 }
 
-double Force::stable_step_in(const lie::Scheme& scheme, const State& x) const
-{
-    return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity()
-                                  : scheme.stability / 2 * stable_step(x, scheme.loads);
-}
-
 double Force::stable_step_in(const lie::Scheme& scheme, const State& x, std::span<const int> near) const
 {
     return is_implicit_in(scheme) ? std::numeric_limits<double>::infinity()

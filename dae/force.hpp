@@ -148,19 +148,14 @@ public:
     {
         return stable_step(x, evaluation);
     }
-    /// is_stable() with the numbers of touching contacts of each body
-    virtual bool is_stable_with(const State& x, double h, LoadEvaluation evaluation,
-                                std::span<const int> /*touching*/) const
-    {
-        return is_stable(x, h, evaluation);
-    }
-    /// stable_step() for the loads of a scheme. Infinite if it evaluates this force implicitly.
-    double stable_step_in(const lie::Scheme& scheme, const State& x) const;
+    /// stable_step_with() for the loads of a scheme. Infinite if it evaluates this force implicitly.
     double stable_step_in(const lie::Scheme& scheme, const State& x, std::span<const int> near) const;
     bool is_implicit_in(const lie::Scheme& scheme) const;
-    /// Whether a step h [s] is within the stability limit for the present stiffness and damping. Called for
-    /// each accepted step; the function must not allocate memory.
-    virtual bool is_stable(const State& x, double h, LoadEvaluation evaluation) const
+    /// Whether a step h [s] is within the stability limit for the present stiffness and damping, with the
+    /// numbers of touching contacts of each body. Called for each accepted step; the function must not
+    /// allocate memory.
+    virtual bool is_stable(const State& x, double h, LoadEvaluation evaluation,
+                           std::span<const int> /*touching*/) const
     {
         return !(h > stable_step(x, evaluation));
     }

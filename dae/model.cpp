@@ -154,8 +154,8 @@ void Model::prepare(State& x)
         if (const std::string reason = force[k]->start_error(x); !reason.empty())
             throw ForceError(force[k]->label() + ": " + reason, static_cast<int>(k));
     near.set_layout(bodies(), 0, 0);
-    if (const auto list = near.found(x); !near.empty())
-        for (const NearForces::List::Entry& e : list->entry)
+    if (!near.empty())
+        for (const auto list = near.found(x); const NearForces::List::Entry& e : list->entry)
             if (const std::string reason = e.force->start_error(x); !reason.empty()) {
                 const std::string& place = near.group_of(e.number).first->place;
                 throw ForceError((place.empty() ? "" : place + ": ") + e.force->label() + ": " + reason,

@@ -9,6 +9,7 @@
 #include "dae/forces/near_forces.hpp"
 #include "lie/check.hpp"
 #include "lie/system.hpp"
+#include "lie/tree/tree.hpp"
 
 #include <memory>
 #include <span>
@@ -132,7 +133,7 @@ public:
     /// Indices of the forces that have this body among their bodies(), ascending
     std::span<const int> forces_on(int body) const;
 
-    /// Number of contacts of each body in the state x, for Force::stable_step_with() and is_stable_with()
+    /// Number of contacts of each body in the state x, for Force::stable_step_with() and is_stable()
     void count_contacts(const State& x, Force::Counted which, std::vector<int>& of_body) const;
     /// Weight of all bodies [N]: the largest static load of a contact
     double weight() const { return total_mass * gravity.norm(); }

@@ -3,6 +3,7 @@
 
 #include "dae/constraints/dp1.hpp"
 #include "dae/constraints/dp2.hpp"
+#include "dae/joints/rows.hpp"
 #include "dae/model.hpp"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ using Kind = lie::TreeJoint::Kind;
 
 // Largest sine of an angle between two directions that are taken as parallel, and smallest one of two that
 // are taken as independent
-constexpr double parallel = 1e-9, independent = 1e-6;
+constexpr double parallel_sine = 1e-9, independent_sine = 1e-6;
 
 /// The rows between two bodies
 struct PairOfBodies {
@@ -33,12 +34,9 @@ bool is_zero(const Driver& f) { return f.is_constant() && f.f(0) == 0; }
 /// A frame whose third axis is this unit vector
 Mat3 frame(const Vec3& axis)
 {
-    Eigen::Index smallest = 0;
-    axis.cwiseAbs().minCoeff(&smallest);
+    const Perpendicular p(axis);
     Mat3 F;
-    F.col(2) = axis;
-    F.col(0) = axis.cross(Vec3::Unit(smallest)).normalized();
-    F.col(1) = axis.cross(F.col(0));
+    F << p.first, p.second, axis;
     return F;
 }
 
@@ -68,7 +66,10 @@ bool add(PairOfBodies& pair, const Block& block, int k)
 /// A vector of a DP1 row in body b
 const Vec3& vector_in(const DP1& row, int b) { return row.i == b ? row.a_bar_i : row.a_bar_j; }
 
-bool are_parallel(const Vec3& a, const Vec3& b) { return a.cross(b).norm() < parallel * a.norm() * b.norm(); }
+bool are_parallel(const Vec3& a, const Vec3& b)
+{
+    return a.cross(b).norm() < parallel_sine * a.norm() * b.norm();
+}
 
 /// The direction, in body b, that both rows keep perpendicular to two directions of the other body, which is
 /// then an axis of both; nothing if there is none
@@ -77,7 +78,7 @@ std::optional<Vec3> common_axis(const PairOfBodies& pair, int b, int other)
     const DP1 &first = *pair.angle[0], &second = *pair.angle[1];
     if (!are_parallel(vector_in(first, b), vector_in(second, b))) return {};
     const Vec3 p = vector_in(first, other).normalized(), q = vector_in(second, other).normalized();
-    if (p.cross(q).norm() < independent) return {};
+    if (p.cross(q).norm() < independent_sine) return {};
     return vector_in(first, b).normalized();
 }
 
@@ -91,7 +92,7 @@ bool keeps_orientation(const PairOfBodies& pair, const State& x)
         directions.col(k) = (motion(x, row.i).A * row.a_bar_i).cross(motion(x, row.j).A * row.a_bar_j);
         directions.col(k).normalize();
     }
-    return std::abs(directions.determinant()) > independent;
+    return std::abs(directions.determinant()) > independent_sine;
 }
 
 /// The joint with these rows, from body i to body j; nothing if they are not those of one joint
@@ -147,7 +148,7 @@ std::optional<lie::TreeJoint> joint_of(PairOfBodies& pair, int i, int j, const S
         const int of = first.i;
         if (second.i != of || first.s_bar_i != second.s_bar_i || first.s_bar_j != second.s_bar_j) return {};
         const Vec3 across = first.a_bar_i.normalized().cross(second.a_bar_i.normalized());
-        if (across.norm() < independent) return {};
+        if (across.norm() < independent_sine) return {};
         const Vec3 axis = motion(x, of).A * across.normalized();
         joint.kind = Kind::slide;
         joint.s_bar_i = of == i ? first.s_bar_i : first.s_bar_j;

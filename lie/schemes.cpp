@@ -5,6 +5,7 @@
 #include "lie/integrator.hpp"
 #include "lie/settings.hpp"
 #include "lie/system.hpp"
+#include "lie/tree/tree.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,8 @@
 /// Energy, and the default variations of a system by central differences.
 #include "lie/system.hpp"
 
+#include "lie/tree/tree.hpp"
+
 #include <algorithm>
 #include <cmath>
 

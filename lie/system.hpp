@@ -21,13 +21,14 @@
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
 #include "lie/state.hpp"
-#include "lie/tree/tree.hpp"
 
 #include <cmath>
 #include <limits>
 #include <string>
 
 namespace hilda::lie {
+
+struct Tree;
 
 /// A constrained mechanical system. It is constant during a run; everything that changes is in State.
 ///

@@ -191,7 +191,7 @@ Diagnosis diagnose(const lie::NumericalFailure& failure, const dae::Model& model
     if (scheme.adaptive) return d;
     for (const auto& force : model.forces())
         if (std::isfinite(force->spring_limits.at_step))
-            if (const double limit = force->stable_step_in(scheme, node); h > limit)
+            if (const double limit = force->stable_step_in(scheme, node, {}); h > limit)
                 d.detail =
                     fmt::format("the step is above {:.3g} s, the stability limit of {} in an explicit step",
                                 limit, force->label());

@@ -120,8 +120,8 @@ ContactPoint ContactForce::node_point(const lie::State& x) const
                                         : saved_point(x).contact_point;
 }
 
-bool ContactForce::is_stable_with(const lie::State& x, double h, lie::LoadEvaluation evaluation,
-                                  std::span<const int> touching) const
+bool ContactForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation,
+                             std::span<const int> touching) const
 {
     if (!is_active(x) || !is_touching(x)) return true;
     const Motion &bi = motion(x, i), &bj = motion(x, j);

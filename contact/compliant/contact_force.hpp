@@ -28,8 +28,8 @@ public:
     /// CompliantContact::state_at_largest_compression
     double stable_step_with(const lie::State& x, lie::LoadEvaluation evaluation,
                             std::span<const int> near) const override;
-    bool is_stable_with(const lie::State& x, double h, lie::LoadEvaluation evaluation,
-                        std::span<const int> touching) const override;
+    bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation,
+                   std::span<const int> touching) const override;
     /// Throws NumericalFailure "contact_missed" if the bodies pass through each other within the step.
     void check_step(const lie::State& before, const lie::State& after) const override;
     /// Of the normal law as well, at the largest compression expected

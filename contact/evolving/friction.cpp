@@ -106,8 +106,8 @@ double EvolvingFriction::stable_step_with(const lie::State& x, lie::LoadEvaluati
     return friction_pair.stable_step(now, {.rigid = true}, bi, bj, contacts(x, Counted::near, near));
 }
 
-bool EvolvingFriction::is_stable_with(const lie::State& x, double h, lie::LoadEvaluation /*evaluation*/,
-                                      std::span<const int> touching) const
+bool EvolvingFriction::is_stable(const lie::State& x, double h, lie::LoadEvaluation /*evaluation*/,
+                                 std::span<const int> touching) const
 {
     const double N = normal_force(x);
     if (!(N > 0)) return true;

@@ -45,8 +45,8 @@ public:
     /// constraint eliminates the normal direction. Infinite while the fallback replaces the contact.
     double stable_step_with(const lie::State& x, lie::LoadEvaluation evaluation,
                             std::span<const int> near) const override;
-    bool is_stable_with(const lie::State& x, double h, lie::LoadEvaluation evaluation,
-                        std::span<const int> touching) const override;
+    bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation,
+                   std::span<const int> touching) const override;
 
     double normal_force(const lie::State& x) const;  ///< the F_N that the friction uses [N]; 0 if inactive
     bool is_active(const lie::State& x) const override;

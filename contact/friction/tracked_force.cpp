@@ -275,13 +275,6 @@ double TrackedForce::stable_step(const lie::State& x, lie::LoadEvaluation evalua
     return stable_step_with(x, evaluation, near);
 }
 
-bool TrackedForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const
-{
-    std::vector<int> touching;
-    model.count_contacts(x, Counted::touching, touching);
-    return is_stable_with(x, h, evaluation, touching);
-}
-
 ContactCounts TrackedForce::contacts(const lie::State& x, Counted which, std::span<const int> of_body) const
 {
     int counted = is_counted(x, which) ? 1 : 0;

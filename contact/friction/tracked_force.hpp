@@ -38,7 +38,6 @@ public:
     bool is_counted(const lie::State& x, Counted which) const override;
     double stable_step(const lie::State& x,
                        lie::LoadEvaluation evaluation = lie::LoadEvaluation::at_step) const final;
-    bool is_stable(const lie::State& x, double h, lie::LoadEvaluation evaluation) const final;
 
     int max_static_springs() const override { return 3; }
     int static_springs(const lie::State& x, StaticSpring* out) const override;

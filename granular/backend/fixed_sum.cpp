@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "granular/backend/fixed_sum.hpp"
 
+#include "io/arithmetic/clones.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-// Several versions for the instructions of the processor. They give the same bits: all operations are exact.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define HILDA_CLONES __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define HILDA_CLONES
-#endif
 
 namespace hilda::granular {
 
@@ -25,7 +19,7 @@ struct Range {
     double largest;
 };
 
-HILDA_CLONES Range range_of(const double* x, std::size_t n)
+HILDA_CLONES("avx512f", "avx2", "default") Range range_of(const double* x, std::size_t n)
 {
     constexpr double beyond = 0x1p200;
     double largest[lanes] = {}, least[lanes], not_finite[lanes] = {};
@@ -49,7 +43,8 @@ HILDA_CLONES Range range_of(const double* x, std::size_t n)
 /// 2^-53 σ, so that the sum of the q and x - q are exact if σ is at least twice the number of terms times the
 /// largest (Rump, Ogita and Oishi 2008, Accurate floating-point summation, Algorithm 3.3). Replaces the terms
 /// by what remains of them, and returns whether something does.
-HILDA_CLONES bool split(double* x, std::size_t n, const double* sigma, double* sum)
+HILDA_CLONES("avx512f", "avx2", "default")
+bool split(double* x, std::size_t n, const double* sigma, double* sum)
 {
     double first[lanes] = {}, second[lanes] = {}, third[lanes] = {}, rest[lanes] = {};
     const double s_1 = sigma[0], s_2 = sigma[1], s_3 = sigma[2];

@@ -160,27 +160,19 @@ struct FixedVec {
     }
     Vec<double> value() const { return {x.value(), y.value(), z.value()}; }
 };
-class FloatPartVec {
+template <class Part, class Number>
+class PartVec {
 public:
-    HILDA_HD void add(const Vec<float>& v, FixedVec& sum)
+    HILDA_HD void add(const Vec<Number>& v, FixedVec& sum)
     {
         x.add(v.x, sum.x), y.add(v.y, sum.y), z.add(v.z, sum.z);
     }
     HILDA_HD void finish(FixedVec& sum) { x.finish(sum.x), y.finish(sum.y), z.finish(sum.z); }
 
 private:
-    FloatPart x, y, z;
+    Part x, y, z;
 };
-class DoublePartVec {
-public:
-    HILDA_HD void add(const Vec<double>& v, FixedVec& sum)
-    {
-        x.add(v.x, sum.x), y.add(v.y, sum.y), z.add(v.z, sum.z);
-    }
-    HILDA_HD void finish(FixedVec& sum) { x.finish(sum.x), y.finish(sum.y), z.finish(sum.z); }
-
-private:
-    DoublePart x, y, z;
-};
+using FloatPartVec = PartVec<FloatPart, float>;
+using DoublePartVec = PartVec<DoublePart, double>;
 
 }  // namespace hilda::granular

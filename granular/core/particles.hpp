@@ -156,17 +156,26 @@ struct CellGrid {
     }
 };
 
-/// Difference of the coordinates i - j along one axis [units]; the minimum image along a periodic axis.
+/// The periods by which the minimum image of j is moved along an axis; 0 along an axis that is not periodic.
 /// cell_i, cell_j: cell indices along the axis.
+HILDA_HD HILDA_ALWAYS_INLINE std::int32_t nearest_period(std::int32_t cell_i, std::int32_t cell_j,
+                                                         const CellGrid& g, int axis)
+{
+    const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
+    if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return 0;
+    return d > 0 ? 1 : -1;
+}
+
+/// Difference of the coordinates i - j along one axis [units], with j moved by a number of periods
 ///
 /// The arithmetic is modulo 2^32. The result is exact if the difference is below 2^31 units in magnitude,
 /// which is at least four cell widths.
-HILDA_HD HILDA_ALWAYS_INLINE std::int32_t difference(std::int32_t cell_i, std::int32_t cell_j, std::int32_t i,
-                                                     std::int32_t j, const CellGrid& g, int axis)
+HILDA_HD HILDA_ALWAYS_INLINE std::int32_t difference(std::int32_t i, std::int32_t j, std::int32_t periods,
+                                                     const CellGrid& g, int axis)
 {
-    const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
-    if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return wrapped_difference(i, j);
-    return wrapped_sum(wrapped_difference(i, j), wrapped_product(d > 0 ? -n : n, g.width[axis]));
+    const std::int32_t d = wrapped_difference(i, j);
+    if (periods == 0) return d;
+    return wrapped_difference(d, wrapped_product(periods, wrapped_product(g.cells[axis], g.width[axis])));
 }
 
 /// Difference of two positions i - j [units]
@@ -175,9 +184,9 @@ struct Difference {
 };
 HILDA_HD HILDA_ALWAYS_INLINE Difference difference(const CellGrid& g, const Position& i, const Position& j)
 {
-    return {difference(g.x_of(i.cell), g.x_of(j.cell), i.x, j.x, g, 0),
-            difference(g.y_of(i.cell), g.y_of(j.cell), i.y, j.y, g, 1),
-            difference(g.z_of(i.cell), g.z_of(j.cell), i.z, j.z, g, 2)};
+    return {difference(i.x, j.x, nearest_period(g.x_of(i.cell), g.x_of(j.cell), g, 0), g, 0),
+            difference(i.y, j.y, nearest_period(g.y_of(i.cell), g.y_of(j.cell), g, 1), g, 1),
+            difference(i.z, j.z, nearest_period(g.z_of(i.cell), g.z_of(j.cell), g, 2), g, 2)};
 }
 
 /// A periodic image of particle j in a pair: j moved by (x, y, z) periods, each -1, 0 or 1, in one byte
@@ -192,24 +201,12 @@ struct Image {
     HILDA_HD static std::int32_t y_of(std::uint8_t image) { return image / 3 % 3 - 1; }
     HILDA_HD static std::int32_t z_of(std::uint8_t image) { return image / 9 - 1; }
 };
-/// The periods by which the nearest image of j is moved along an axis; see the function difference()
-HILDA_HD inline std::int32_t nearest_period(std::int32_t cell_i, std::int32_t cell_j, const CellGrid& g,
-                                            int axis)
-{
-    const std::int32_t d = cell_i - cell_j, n = g.cells[axis];
-    if (g.periodic[axis] == 0 || (2 * d <= n && 2 * d >= -n)) return 0;
-    return d > 0 ? 1 : -1;
-}
 /// Difference of two positions, i minus this image of j [units]
 HILDA_HD inline Difference difference(const CellGrid& g, const Position& i, const Position& j,
                                       std::uint8_t image)
 {
-    const auto along = [&](std::int32_t at_i, std::int32_t at_j, std::int32_t periods, int axis) {
-        return wrapped_difference(wrapped_difference(at_i, at_j),
-                                  wrapped_product(periods, wrapped_product(g.cells[axis], g.width[axis])));
-    };
-    return {along(i.x, j.x, Image::x_of(image), 0), along(i.y, j.y, Image::y_of(image), 1),
-            along(i.z, j.z, Image::z_of(image), 2)};
+    return {difference(i.x, j.x, Image::x_of(image), g, 0), difference(i.y, j.y, Image::y_of(image), g, 1),
+            difference(i.z, j.z, Image::z_of(image), g, 2)};
 }
 
 /// Position in the global frame [m]

@@ -436,8 +436,6 @@ private:
     void end_insertion(const std::vector<Particle>& all);
     Particle particle_at(const Particles<par::Cpu>& in, std::uint32_t k) const;
     Domain domain_of(const std::vector<Particle>& all) const;
-    std::vector<Vec3> separations(const Arrays<par::Cpu>& a) const;
-    void set_images(Arrays<par::Cpu>& a, const std::vector<Vec3>& apart) const;
     bool set_cells(CellGrid& grid, double edge, std::uint32_t replicas) const;
     [[noreturn]] void refuse_domain(double edge, std::uint32_t replicas) const;
     std::vector<CellPosition> cell_positions(const Domain& in, const std::vector<Particle>& all,

@@ -14,6 +14,43 @@ namespace hilda::granular {
 
 using namespace detail;
 
+namespace {
+
+/// The separations of the pairs [m]; zero for those with boundaries and without contact
+std::vector<Vec3> separations(const CellGrid& g, const Arrays<par::Cpu>& a)
+{
+    std::vector<Vec3> all(a.pairs.count);
+    for (std::uint32_t n = 0; n < a.pairs.count; ++n)
+        if (a.pairs.in_contact.data()[n] != 0 && (a.pairs.j.data()[n] & PairView::boundary_bit) == 0)
+            all[n] = separation(g, a, n);
+    return all;
+}
+
+/// Sets the images of the pairs to those with these separations, in a new domain.
+void set_images(const Domain& domain, Arrays<par::Cpu>& a, const std::vector<Vec3>& apart)
+{
+    const CellGrid& g = domain.grid;
+    a.pairs.image.resize(a.pairs.count);
+    for (std::uint32_t n = 0; n < a.pairs.count; ++n) {
+        a.pairs.image.data()[n] = Image::none;
+        if (a.pairs.in_contact.data()[n] == 0 || (a.pairs.j.data()[n] & PairView::boundary_bit) != 0)
+            continue;
+        const Vec3 d = separation(g, a, n) - apart[n];
+        const Position* const position = a.particle.position.data();
+        const std::uint32_t i = position[a.pairs.i.data()[n]].cell, j = position[a.pairs.j.data()[n]].cell;
+        const auto periods = [&](double x, std::int32_t cell_i, std::int32_t cell_j, int axis) {
+            if (!domain.is_short(axis)) return nearest_period(cell_i, cell_j, g, axis);
+            const long whole = std::lround(x / (g.unit * g.width[axis] * g.cells[axis]));
+            return static_cast<std::int32_t>(std::clamp(whole, -1L, 1L));
+        };
+        a.pairs.image.data()[n] =
+            Image::pack(periods(d.x, g.x_of(i), g.x_of(j), 0), periods(d.y, g.y_of(i), g.y_of(j), 1),
+                        periods(d.z, g.z_of(i), g.z_of(j), 2));
+    }
+}
+
+}  // namespace
+
 /// The particle with its mass, and fixed if it is attached. Throws io::InvalidInput if it is not valid.
 Particle World::checked(const Particle& p, const std::string& where) const
 {
@@ -319,39 +356,6 @@ void World::write_particle(std::uint32_t k, const Particle& particle, const Cell
     }
 }
 
-/// The separations of the pairs [m]; zero for those with boundaries and without contact
-std::vector<Vec3> World::separations(const Arrays<par::Cpu>& a) const
-{
-    std::vector<Vec3> all(a.pairs.count);
-    for (std::uint32_t n = 0; n < a.pairs.count; ++n)
-        if (a.pairs.in_contact.data()[n] != 0 && (a.pairs.j.data()[n] & PairView::boundary_bit) == 0)
-            all[n] = separation(domain.grid, a, n);
-    return all;
-}
-
-/// Sets the images of the pairs to those with these separations, in a new grid.
-void World::set_images(Arrays<par::Cpu>& a, const std::vector<Vec3>& apart) const
-{
-    const CellGrid& g = domain.grid;
-    a.pairs.image.resize(a.pairs.count);
-    for (std::uint32_t n = 0; n < a.pairs.count; ++n) {
-        a.pairs.image.data()[n] = Image::none;
-        if (a.pairs.in_contact.data()[n] == 0 || (a.pairs.j.data()[n] & PairView::boundary_bit) != 0)
-            continue;
-        const Vec3 d = separation(g, a, n) - apart[n];
-        const Position* const position = a.particle.position.data();
-        const std::uint32_t i = position[a.pairs.i.data()[n]].cell, j = position[a.pairs.j.data()[n]].cell;
-        const auto periods = [&](double x, std::int32_t cell_i, std::int32_t cell_j, int axis) {
-            if (!domain.is_short(axis)) return nearest_period(cell_i, cell_j, g, axis);
-            const long whole = std::lround(x / (g.unit * g.width[axis] * g.cells[axis]));
-            return static_cast<std::int32_t>(std::clamp(whole, -1L, 1L));
-        };
-        a.pairs.image.data()[n] =
-            Image::pack(periods(d.x, g.x_of(i), g.x_of(j), 0), periods(d.y, g.y_of(i), g.y_of(j), 1),
-                        periods(d.z, g.z_of(i), g.z_of(j), 2));
-    }
-}
-
 /// Writes these particles to the arrays, ordered by id.
 void World::insert(const std::vector<Particle>& all)
 {
@@ -360,7 +364,7 @@ void World::insert(const std::vector<Particle>& all)
     std::vector<CellPosition> located = cell_positions(next, all, inserted_count);
     check_laws(all);
     Arrays<par::Cpu>& a = engine->arrays();
-    const std::vector<Vec3> apart = next.has_images() ? separations(a) : std::vector<Vec3>();
+    const std::vector<Vec3> apart = next.has_images() ? separations(domain.grid, a) : std::vector<Vec3>();
     domain = next, has_domain = true;
 
     // contacts and accelerations of the particles that are in the arrays already are preserved
@@ -381,7 +385,7 @@ void World::insert(const std::vector<Particle>& all)
     p.resize(static_cast<std::uint32_t>(all.size()));
     if (options.orientation) p.orientation.resize(p.count), p.orientation_compensation.resize(p.count);
     for (std::uint32_t k = 0; k < p.count; ++k) write_particle(k, all[k], located[k]);
-    if (next.has_images()) set_images(a, apart);
+    if (next.has_images()) set_images(next, a, apart);
     if (uses_previous_acceleration(options.scheme)) {
         p.acc.resize(p.count), p.alpha.resize(p.count);
         std::copy(acc_of.begin(), acc_of.end(), p.acc.data());

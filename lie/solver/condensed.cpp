@@ -18,7 +18,7 @@ constexpr double smallest_accepted_pivot = 1e-12, smallest_with_bounds = 1e-8;
 }  // namespace
 
 /// W = C L⁻ᵀ
-HILDA_CLONES void Condensed::set_w(const Rows& C)
+HILDA_CLONES("avx2", "default") void Condensed::set_w(const Rows& C)
 {
     for (const Group& g : group)
         with_rows(g.rows, [&]<int rows>() HILDA_INLINE {
@@ -41,7 +41,7 @@ HILDA_CLONES void Condensed::set_w(const Rows& C)
 }
 
 /// S = W Wᵀ
-HILDA_CLONES void Condensed::set_products()
+HILDA_CLONES("avx2", "default") void Condensed::set_products()
 {
     std::fill(value.begin(), value.end(), Column{});
     const auto add = [&]<int kernel>() HILDA_INLINE {
@@ -60,7 +60,7 @@ HILDA_CLONES void Condensed::set_products()
 
 /// S ← L and E, in the order of elimination. Returns false if a pivot is not larger than `least` times its
 /// diagonal entry.
-HILDA_CLONES bool Condensed::factor_columns(double least)
+HILDA_CLONES("avx2", "default") bool Condensed::factor_columns(double least)
 {
     SmallestPivot so_far;
     for (size_t p = 0; p < order.size(); ++p) {
@@ -120,7 +120,7 @@ void Condensed::solve(Eigen::VectorXd& b)
 }
 
 /// f ← L⁻¹ f,   y ← y + W f
-HILDA_CLONES void Condensed::add_loads(Eigen::VectorXd& b)
+HILDA_CLONES("avx2", "default") void Condensed::add_loads(Eigen::VectorXd& b)
 {
     for (size_t i = 0; i < by_sqrt_m.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(6 * i);
@@ -150,7 +150,7 @@ void Condensed::solve_constraints(Eigen::VectorXd& b)
 }
 
 /// y = -g
-HILDA_CLONES void Condensed::take_right_side(const Eigen::VectorXd& b)
+HILDA_CLONES("avx2", "default") void Condensed::take_right_side(const Eigen::VectorXd& b)
 {
     const double* g = b.data() + 6 * by_sqrt_m.size();
     for (size_t k = 0; k < group.size(); ++k)
@@ -160,7 +160,7 @@ HILDA_CLONES void Condensed::take_right_side(const Eigen::VectorXd& b)
         });
 }
 
-HILDA_CLONES void Condensed::solve_multipliers()
+HILDA_CLONES("avx2", "default") void Condensed::solve_multipliers()
 {
     for (size_t p = 0; p < order.size(); ++p) {
         const Group& g = group[order[p]];
@@ -191,7 +191,7 @@ HILDA_CLONES void Condensed::solve_multipliers()
     }
 }
 
-HILDA_CLONES void Condensed::finish(Eigen::VectorXd& b) const
+HILDA_CLONES("avx2", "default") void Condensed::finish(Eigen::VectorXd& b) const
 {
     for (size_t k = 0; k < group.size(); ++k) {
         const Group& g = group[k];

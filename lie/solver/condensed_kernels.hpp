@@ -3,20 +3,13 @@
 ///
 /// A block is a pointer to its columns. The sizes are parameters of the templates, so that the compiler
 /// unrolls the loops. All functions are inlined into those that HILDA_CLONES marks, and are then compiled for
-/// each instruction set. No product is fused with a sum: the results are the same bit by bit.
+/// each instruction set.
 
 #pragma once
 
+#include "io/arithmetic/clones.hpp"
 #include "lie/solver/columns.hpp"
 
-// The functions that it marks are compiled twice, for AVX2 and for every x86-64, and the program takes the
-// one that its processor can run. Not with sanitizers, whose start is later than this choice.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__AVX2__) && \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HILDA_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define HILDA_CLONES
-#endif
 #define HILDA_INLINE __attribute__((always_inline))
 
 namespace hilda::lie::kernels {

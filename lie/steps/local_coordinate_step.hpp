@@ -5,8 +5,6 @@
 
 #include "lie/steps/node_step.hpp"
 
-#include <limits>
-
 namespace hilda::lie {
 
 /// Stages of a Runge-Kutta-Munthe-Kaas method. NodeStep::finish() is the projection at its end.
@@ -39,15 +37,7 @@ protected:
     /// The poses and velocities of x are those of x_n changed by d, the increments of (r, θ, ṙ, ω̄).
     void place(State& x, const Eigen::VectorXd& d);
 
-    // Parts of AdaptiveStep that a method with data beyond its stages replaces
-    void begin_run() {}            ///< before the first step of a run
-    void begin_internal_step() {}  ///< before the attempts of a step from x_n
-    void accept_stages(double /*h*/) {}
-    double most_growth() const { return std::numeric_limits<double>::infinity(); }  ///< of the next step
-
     Eigen::VectorXd theta;  ///< θ of each body at the stage
-    /// The error that Newton's method has not reached in the last attempt, over the tolerance; 0: it has
-    double unreached = 0;
 };
 
 }  // namespace hilda::lie

@@ -36,6 +36,14 @@ protected:
     /// steps.
     int finish(State& x, const std::string& scheme);
 
+    // Parts of AdaptiveStep that a method with data beyond its stages replaces
+    void begin_run() {}            ///< before the first step of a run
+    void begin_internal_step() {}  ///< before the attempts of a step from x_n
+    void accept_stages(double /*h*/) {}
+    double most_growth() const { return std::numeric_limits<double>::infinity(); }  ///< of the next step
+    /// The error that Newton's method has not reached in the last attempt, over the tolerance; 0: it has
+    double unreached = 0;
+
 private:
     bool assembled_at(const State& x) const;
 

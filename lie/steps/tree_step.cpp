@@ -2,7 +2,7 @@
 #include "lie/steps/tree_step.hpp"
 
 #include "lie/check.hpp"
-#include "lie/steps/state_numbers.hpp"
+#include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
 
 namespace hilda::lie {
@@ -35,7 +35,7 @@ void TreeStep::place(State& x, const Eigen::VectorXd& d)
     coordinates.place(u, w, x);
 }
 
-double TreeStep::square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error) const
+double TreeStep::square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error)
 {
     coordinates.spread(error.head(freedoms), 0, of_bodies);
     coordinates.spread(error.tail(freedoms), 6, of_bodies);
@@ -60,10 +60,10 @@ int TreeStep::finish(State& x, const std::string& /*scheme*/)
 void TreeStep::set_multipliers(State& node)
 {
     if (model.rows() == 0) return;
-    State& x = with_multipliers;
-    copy(node, x);
-    NodeStep::set_accelerations(x);
-    node.lambda = x.lambda;
+    NodeStep::assemble_once(node);
+    set_load_terms(model, K, node, loads, e);
+    K.solve_in_step(e);
+    node.lambda = K.constraint_part(e);
 }
 
 }  // namespace hilda::lie

@@ -7,8 +7,6 @@
 #include "lie/tree/articulated_bodies.hpp"
 #include "lie/tree/joint_coordinates.hpp"
 
-#include <limits>
-
 namespace hilda::lie {
 
 /// The equations of motion in the coordinates and rates (u, w) of the joints, without constraints:
@@ -36,20 +34,13 @@ protected:
     void place(State& x, const Eigen::VectorXd& d);
     /// Square of the Euclidean norm of an error of the variables as one of (r, θ, ṙ, ω̄) of the bodies,
     /// divided by their tolerances
-    double square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error) const;
+    double square_over(const Eigen::VectorXd& tolerance, const Eigen::VectorXd& error);
 
     void assemble_once(const State&) {}
     /// r̈ and ω̄̇
     void set_accelerations(State& x);
     /// The end of a step: accelerations, and multipliers if the settings ask for them. Returns 0.
     int finish(State& x, const std::string& scheme);
-
-    // Parts of AdaptiveStep
-    void begin_run() {}
-    void begin_internal_step() {}
-    void accept_stages(double /*h*/) {}
-    double most_growth() const { return std::numeric_limits<double>::infinity(); }
-    double unreached = 0;
 
     Eigen::VectorXd w_n, u, w, wdot;  ///< rates of x_n; coordinates, rates and their derivatives of the stage
 
@@ -61,8 +52,7 @@ protected:
     const int freedoms;
 
 private:
-    mutable Eigen::VectorXd of_bodies;  ///< an error of (r, θ, ṙ, ω̄)
-    State with_multipliers;             ///< workspace
+    Eigen::VectorXd of_bodies;  ///< an error of (r, θ, ṙ, ω̄)
 };
 
 }  // namespace hilda::lie

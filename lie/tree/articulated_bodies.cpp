@@ -22,19 +22,13 @@ void ArticulatedBodies::solve(State& x, const Loads& loads, Eigen::VectorXd& qdd
     for (int k = joints - 1; k >= 0; --k) eliminate(k);
     int at = 0;
     for (int k = 0; k < joints; ++k) {
-        accelerate(k, qddot, at);
-        at += tree.joint[k].freedoms();
+        const TreeJoint& joint = tree.joint[k];
         const Work& w = work[k];
-        Motion& body = x.body[tree.joint[k].body];
+        Motion& body = x.body[joint.body];
+        accelerate(k, body.A, qddot, at);
         body.rddot = w.a + w.alpha.cross(w.rho) + w.centripetal;
         body.omegadot_bar = body.A.transpose() * w.alpha;
-    }
-    at = 0;
-    for (const TreeJoint& joint : tree.joint) {
-        if (joint.kind == Kind::ball)
-            qddot.segment<3>(at) = x.body[joint.body].A.transpose() * qddot.segment<3>(at);
-        if (joint.kind == Kind::free)
-            qddot.segment<6>(at) << x.body[joint.body].rddot, x.body[joint.body].omegadot_bar;
+        if (joint.kind == Kind::free) qddot.segment<6>(at) << body.rddot, body.omegadot_bar;
         at += joint.freedoms();
     }
 }
@@ -129,9 +123,8 @@ void ArticulatedBodies::eliminate(int k)
     before.p_M += w.p_M + w.D.cross(w.p_F);
 }
 
-/// Sets the accelerations of the joint and of the body from those of the body before. q̈ of a ball has global
-/// components.
-void ArticulatedBodies::accelerate(int k, Eigen::VectorXd& qddot, int at)
+/// Sets the accelerations of the joint and of the body from those of the body before. A: of the body
+void ArticulatedBodies::accelerate(int k, const Mat3& A, Eigen::VectorXd& qddot, int at)
 {
     const TreeJoint& joint = tree.joint[k];
     Work& w = work[k];
@@ -147,7 +140,7 @@ void ArticulatedBodies::accelerate(int k, Eigen::VectorXd& qddot, int at)
     w.alpha = before.alpha + w.c_alpha;
     if (joint.kind == Kind::ball) {
         const Vec3 gamma = w.D_inverse * (w.u - w.B.transpose() * w.a - w.C * w.alpha);
-        qddot.segment<3>(at) = gamma;
+        qddot.segment<3>(at) = A.transpose() * gamma;
         w.alpha += gamma;
     } else if (joint.kind != Kind::fixed) {
         const double of_joint = (w.u[0] - w.U_F.dot(w.a) - w.U_M.dot(w.alpha)) * w.D_inverse(0, 0);

@@ -48,7 +48,7 @@ private:
 
     void set_body(int k, const State& x, const Loads& loads);
     void eliminate(int k);
-    void accelerate(int k, Eigen::VectorXd& qddot, int at);
+    void accelerate(int k, const Mat3& A, Eigen::VectorXd& qddot, int at);
 
     const Mass& mass;
     const Tree& tree;

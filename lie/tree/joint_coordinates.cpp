@@ -18,7 +18,6 @@ const Motion& motion(const State& x, int body) { return body < 0 ? at_rest : x.b
 JointCoordinates::JointCoordinates(const Tree& tree) : tree(tree), origin(tree.joint.size())
 {
     for (const TreeJoint& joint : tree.joint) count += joint.freedoms();
-    moved.resize(tree.joint.size()), turned.resize(tree.joint.size());
 }
 
 void JointCoordinates::start(const State& x, Eigen::Ref<Eigen::VectorXd> w, Eigen::Ref<Eigen::VectorXd> wdot)
@@ -132,28 +131,28 @@ void JointCoordinates::set_rates(const Eigen::Ref<const Eigen::VectorXd>& u,
 void JointCoordinates::spread(const Eigen::Ref<const Eigen::VectorXd>& du, int first,
                               Eigen::VectorXd& out) const
 {
+    const auto moved = [&](int body) { return out.segment<3>(12 * body + first); };
+    const auto turned = [&](int body) { return out.segment<3>(12 * body + first + 3); };  // global frame
     int at = 0;
     for (size_t k = 0; k < tree.joint.size(); ++k) {
         const TreeJoint& joint = tree.joint[k];
         const Origin& o = origin[k];
-        Vec3 &r = moved[joint.body], &theta = turned[joint.body];
-        if (joint.kind == Kind::free) {
-            r = du.segment<3>(at), theta = o.A * du.segment<3>(at + 3);
-        } else {
-            theta = r = Vec3::Zero();
-            if (joint.before >= 0) {
-                theta = turned[joint.before];
-                r = moved[joint.before] + theta.cross(o.d);
-            }
-            if (joint.kind == Kind::hinge) theta += du[at] * o.axis;
-            if (joint.kind == Kind::ball) theta += o.A * du.segment<3>(at);
-            if (joint.kind == Kind::slide) r += du[at] * o.axis;
-            r += theta.cross(o.rho);
+        Vec3 r = Vec3::Zero(), theta = Vec3::Zero();
+        if (joint.before >= 0) {
+            theta = turned(joint.before);
+            r = moved(joint.before) + theta.cross(o.d);
         }
-        out.segment<3>(12 * joint.body + first) = r;
-        out.segment<3>(12 * joint.body + first + 3) = o.A.transpose() * theta;
+        if (joint.kind == Kind::hinge) theta += du[at] * o.axis;
+        if (joint.kind == Kind::ball) theta += o.A * du.segment<3>(at);
+        if (joint.kind == Kind::slide) r += du[at] * o.axis;
+        r += theta.cross(o.rho);
+        if (joint.kind == Kind::free) r = du.segment<3>(at), theta = o.A * du.segment<3>(at + 3);
+        moved(joint.body) = r;
+        turned(joint.body) = theta;
         at += joint.freedoms();
     }
+    for (size_t k = 0; k < tree.joint.size(); ++k)
+        turned(tree.joint[k].body) = (origin[k].A.transpose() * turned(tree.joint[k].body)).eval();
 }
 
 }  // namespace hilda::lie

@@ -53,7 +53,6 @@ private:
     const Tree& tree;
     int count = 0;
     std::vector<Origin> origin;
-    mutable std::vector<Vec3> moved, turned;  ///< workspace of spread(): δr and δθ of each body
 };
 
 }  // namespace hilda::lie

@@ -7,11 +7,7 @@
 #include "lie/steps/projection.hpp"
 #include "lie/steps/step_control.hpp"
 #include "lie/steps/switch_search.hpp"
-
-#include <ida/ida.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_sparse.h>
+#include "reference/solvers/sundials.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -46,43 +42,12 @@ constexpr double newton_fraction = 0.01, rounding_level = 3e-15;
 // tolerances are at least this multiple of it.
 constexpr double far_coordinate = 1e3, rounding_multiple = 10;
 
-template <auto destroy>
-struct Destroy {
-    template <class T>
-    void operator()(T* p) const
-    {
-        destroy(p);
-    }
-};
-
-void free_context(SUNContext context) { SUNContext_Free(&context); }
-void free_ida(void* ida_memory) { IDAFree(&ida_memory); }
-
-template <class Handle, auto destroy>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Destroy<destroy>>;
-
-template <class Handle>
-Handle allocated(Handle handle)
-{
-    if (handle == nullptr) throw std::bad_alloc();
-    return handle;
-}
-
-Eigen::Map<Eigen::VectorXd> map(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
-
 std::string number(double value)
 {
     std::ostringstream text;
     text.precision(9);
     text << value;
     return text.str();
-}
-
-SUNContext new_context()
-{
-    SUNContext context = nullptr;
-    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
-    return context;
 }
 
 double tolerance_of_step(const lie::System& system, double tolerance)

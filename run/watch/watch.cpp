@@ -77,7 +77,7 @@ void Watch::check_stability(const dae::Force& force, int number, const lie::Stat
 {
     if (values.unstable.place >= 0 || scheme.adaptive) return;
     if (touching.empty()) model.count_contacts(x, dae::Force::Counted::touching, touching);
-    if (force.is_stable_with(x, 2 / scheme.stability * grid.h, scheme.loads, touching)) return;
+    if (force.is_stable(x, 2 / scheme.stability * grid.h, scheme.loads, touching)) return;
     values.unstable.include(1, x.t, static_cast<size_t>(number));
     if (action == Action::strict || (action == Action::stop && values.ignore_stability == 0))
         stop("unstable_step", stability_finding().text);

@@ -3,6 +3,7 @@
 
 #include "dae/tree.hpp"
 #include "dae/constraints/cd.hpp"
+#include "dae/forces/spring_damper.hpp"
 #include "dae/joints.hpp"
 #include "dae/model.hpp"
 #include "dae/start.hpp"
@@ -16,8 +17,9 @@
 #include "lie/tree/articulated_bodies.hpp"
 #include "lie/tree/joint_coordinates.hpp"
 #include "tests/support/mechanisms.hpp"
+#include "tests/support/motion_difference.hpp"
 #include "tests/support/no_allocation.hpp"
-#include "tests/support/random_tree.hpp"
+#include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -40,14 +42,45 @@ State at_end(const Model& model, const State& x, const std::string& scheme, doub
     return lie::march(x, *integrator, lie::TimeGrid::over(t_end, h, t_end)).row.back();
 }
 
-double distance(const State& a, const State& b)
+/// Bodies with a joint to the ground or to a body before them, by turns revolute, spherical, translational
+/// and fixed; every seventh body is free. Body numbers and the order of i and j do not follow the tree.
+/// Springs with dampers connect bodies that have no joint. `x` is a consistent start in motion.
+void random_tree(int bodies, unsigned seed, Model& model, State& x)
 {
-    double largest = 0;
-    for (size_t k = 0; k < a.body.size(); ++k)
-        largest = std::max({largest, (a.body[k].r - b.body[k].r).norm(), (a.body[k].A - b.body[k].A).norm(),
-                            (a.body[k].rdot - b.body[k].rdot).norm(),
-                            (a.body[k].omega_bar - b.body[k].omega_bar).norm()});
-    return largest;
+    tests::Random random(seed);
+    for (int b = 0; b < bodies; ++b) {
+        const Mat3 R = random.rotation();
+        const Vec3 sides = random.vector().cwiseAbs() + Vec3::Constant(0.3);
+        const Vec3 squares = sides.cwiseProduct(sides);
+        const double m = random.number(0.5, 1.5);
+        const Vec3 J(squares.y() + squares.z(), squares.z() + squares.x(), squares.x() + squares.y());
+        model.add({.name = "body " + std::to_string(b),
+                   .m = m,
+                   .J_bar = R * (m / 12 * J).asDiagonal() * R.transpose()});
+        Motion& body = x.body.emplace_back();
+        body.r = random.vector(2), body.A = random.rotation();
+        body.rdot = random.vector(), body.omega_bar = random.vector();
+    }
+    // Body n of the tree is body (5 n + 2) mod N of the model; 5 must not divide N.
+    const auto of_tree = [&](int n) { return n < 0 ? ground : (5 * n + 2) % bodies; };
+    for (int n = 0; n < bodies; ++n) {
+        if (n % 7 == 6) continue;
+        int i = of_tree(n < 2 ? -1 : static_cast<int>(random.number(0, n))), j = of_tree(n);
+        if (n % 3 == 1) std::swap(i, j);
+        const Motion &bi = motion(x, i), &bj = motion(x, j);
+        const Vec3 p = random.vector(), a = random.unit();
+        const Vec3 q = n % 4 == 2 ? Vec3(p + random.number() * a) : p;
+        const Vec3 s_i = bi.A.transpose() * (p - bi.r), s_j = bj.A.transpose() * (q - bj.r);
+        const Vec3 a_i = bi.A.transpose() * a, a_j = (n % 8 == 0 ? 1 : -1) * bj.A.transpose() * a;
+        const std::string name = "joint " + std::to_string(n);
+        if (n % 4 == 0) model.constrain(name, revolute(i, s_i, a_i, j, s_j, a_j));
+        if (n % 4 == 1) model.constrain(name, spherical(i, s_i, j, s_j));
+        if (n % 4 == 2) model.constrain(name, translational(i, s_i, a_i, j, s_j, a_j, x));
+        if (n % 4 == 3) model.constrain(name, fixed(i, j, x));
+    }
+    for (int b = 0; b + 3 < bodies; b += 2)
+        model.load(SpringDamper(b, random.vector(0.1), b + 3, random.vector(0.1), 20, 1, 0.3));
+    start(model, x, {.fix_initial = true});
 }
 
 }  // namespace
@@ -56,7 +89,7 @@ TEST_CASE("the joints of a tree are recognised, whatever the order of its bodies
 {
     Model model;
     State x;
-    tests::random_tree(14, 1, model, x);
+    random_tree(14, 1, model, x);
     const lie::Tree& tree = model.tree();
     REQUIRE(tree.refusal.empty());
     REQUIRE(tree.joint.size() == 14);
@@ -137,7 +170,7 @@ TEST_CASE("the accelerations of trees are those of the constraint equations", "[
     for (const int number : {1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14, 16, 17, 18, 19, 21, 36}) {
         Model model;
         State x;
-        tests::random_tree(number, static_cast<unsigned>(number), model, x);
+        random_tree(number, static_cast<unsigned>(number), model, x);
         CAPTURE(number);
         REQUIRE(model.tree().refusal.empty());
         lie::Loads loads(model.bodies());
@@ -159,7 +192,7 @@ TEST_CASE("the accelerations of trees are those of the constraint equations", "[
         CHECK((qddot - wdot).norm() < 1e-11 * size);
         // The poses at the origin, and velocities from the rates in two ways
         coordinates.place(Eigen::VectorXd::Zero(w.size()), w, y);
-        CHECK(distance(x, y) < 1e-12);
+        CHECK(tests::motion_difference(x, y) < 1e-12);
         Eigen::VectorXd v = Eigen::VectorXd::Zero(12 * model.bodies());
         coordinates.spread(w, 0, v);
         for (int b = 0; b < model.bodies(); ++b) {
@@ -173,7 +206,7 @@ TEST_CASE("schemes on a tree have their orders and keep the joints", "[dae][tree
 {
     Model model;
     State x;
-    tests::random_tree(9, 3, model, x);
+    random_tree(9, 3, model, x);
     REQUIRE(model.tree().refusal.empty());
     const double end = 0.2;
     const State exact = at_end(model, x, "rA-dop853", 1e-3, end);
@@ -181,7 +214,7 @@ TEST_CASE("schemes on a tree have their orders and keep the joints", "[dae][tree
         const State y = at_end(model, x, scheme, h, end);
         CHECK(model.largest_residual(y).value < 1e-13);
         CHECK(model.largest_velocity_residual(y).value < 1e-12);
-        return distance(y, exact);
+        return tests::motion_difference(y, exact);
     };
     const auto order = [&](const std::string& scheme, double h, double ratio = 2) {
         return std::log(error(scheme, h) / error(scheme, h / ratio)) / std::log(ratio);
@@ -197,12 +230,12 @@ TEST_CASE("multipliers of a tree are those of the constraint equations", "[dae][
 {
     Model model;
     State x;
-    tests::random_tree(9, 3, model, x);
+    random_tree(9, 3, model, x);
     State y = x;
     const auto every = lie::scheme("tree-rk-4").make(model, {}),
                asked = lie::scheme("tree-rk-4").make(model, {.multipliers = false});
     for (int n = 0; n < 10; ++n) every->step(x, 1e-3), asked->step(y, 1e-3);
-    CHECK(distance(x, y) == 0);
+    CHECK(tests::motion_difference(x, y) == 0);
     CHECK(x.lambda != y.lambda);
     asked->set_multipliers(y);
     CHECK(x.lambda == y.lambda);
@@ -216,7 +249,7 @@ TEST_CASE("adaptive steps on a tree meet their tolerance, and do not depend on t
 {
     Model model;
     State x;
-    tests::random_tree(9, 3, model, x);
+    random_tree(9, 3, model, x);
     const State exact = at_end(model, x, "rA-dop853", 1e-3, 1);
     for (const std::string name : {"tree-dp-5", "tree-dop853"}) {
         const lie::Scheme& scheme = lie::scheme(name).with_adaptive_steps();
@@ -225,10 +258,10 @@ TEST_CASE("adaptive steps on a tree meet their tolerance, and do not depend on t
             const auto one = scheme.make(model, {.rtol = rtol}), ten = scheme.make(model, {.rtol = rtol});
             const State a = lie::march(x, *one, lie::TimeGrid::over(1, 1)).row.back(),
                         b = lie::march(x, *ten, lie::TimeGrid::over(1, 0.1)).row.back();
-            const double error = distance(a, exact);
+            const double error = tests::motion_difference(a, exact);
             CAPTURE(name, rtol, error, one->statistics().steps);
             CHECK(one->statistics().steps == ten->statistics().steps);
-            CHECK(distance(a, b) < 1e-13);
+            CHECK(tests::motion_difference(a, b) < 1e-13);
             CHECK(error < 300 * rtol);
             CHECK(error > 0.01 * rtol);
             CHECK(error < before);
@@ -245,7 +278,7 @@ TEST_CASE("a step on a tree allocates no memory", "[dae][tree][allocation]")
     }
     Model model;
     State x;
-    tests::random_tree(9, 3, model, x);
+    random_tree(9, 3, model, x);
     for (const char* name : {"tree-euler-1", "tree-rk-4", "tree-dp-5", "tree-dop853"})
         for (const lie::Scheme* scheme : {&lie::scheme(name), &lie::scheme(name).with_adaptive_steps()}) {
             const auto integrator = scheme->make(model, {.rtol = 1e-6});

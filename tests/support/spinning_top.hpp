@@ -5,6 +5,7 @@
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/system.hpp"
+#include "lie/tree/tree.hpp"
 
 namespace hilda::tests {
 

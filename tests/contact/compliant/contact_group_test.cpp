@@ -9,6 +9,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "lie/trajectory.hpp"
+#include "tests/support/motion_difference.hpp"
 #include "tests/support/no_allocation.hpp"
 #include "tests/support/random_motion.hpp"
 
@@ -73,17 +74,6 @@ dae::Description started(const std::string& text)
     return d;
 }
 
-/// Largest difference of the motions of two states
-double difference(const lie::State& a, const lie::State& b)
-{
-    double largest = 0;
-    for (size_t k = 0; k < a.body.size(); ++k)
-        largest = std::max({largest, (a.body[k].r - b.body[k].r).norm(), (a.body[k].A - b.body[k].A).norm(),
-                            (a.body[k].rdot - b.body[k].rdot).norm(),
-                            (a.body[k].omega_bar - b.body[k].omega_bar).norm()});
-    return largest;
-}
-
 long near_pairs(const dae::Model& model, const lie::State& x)
 {
     long count = 0;
@@ -110,7 +100,7 @@ TEST_CASE("a pile with a neighbour list moves as with all pairs, to the bit", "[
         long least = 351, most = 0;
         for (int n = 0; n < 3000; ++n) {
             a.advance({}), b.advance({});
-            largest = std::max(largest, difference(a.node(), b.node()));
+            largest = std::max(largest, tests::motion_difference(a.node(), b.node()));
             const long count = near_pairs(*near.model, b.node());
             least = std::min(least, count), most = std::max(most, count);
             if (n == 1000) {  // as from a checkpoint

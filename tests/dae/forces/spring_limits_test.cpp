@@ -136,6 +136,6 @@ TEST_CASE("a limit of a distance or an angle limits the step while it is exceede
     o.x.body[0].A = lie::exp(0.2 * X);
     CHECK(o.model.forces()[0]->stable_step(o.x) == Approx(2 / std::sqrt(5e5 / 2)).epsilon(1e-9));
     CHECK(o.model.forces()[1]->stable_step(o.x) == Approx(2 / std::sqrt(5e5)).epsilon(1e-9));
-    CHECK_FALSE(o.model.forces()[0]->is_stable(o.x, 5e-3, LoadEvaluation::at_step));
-    CHECK(o.model.forces()[0]->is_stable(o.x, 3e-3, LoadEvaluation::at_step));
+    CHECK_FALSE(o.model.forces()[0]->is_stable(o.x, 5e-3, LoadEvaluation::at_step, {}));
+    CHECK(o.model.forces()[0]->is_stable(o.x, 3e-3, LoadEvaluation::at_step, {}));
 }

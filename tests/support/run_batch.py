@@ -21,7 +21,7 @@ def main(program, kind, batch, batches):
     if not cases:
         return 0
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as file:
-        file.write("\n".join(cases) + "\n")
+        file.write("".join(name.replace(",", "\\,") + "\n" for name in cases))
         file.flush()
         done = subprocess.run([program, "--input-file", file.name], stdout=subprocess.PIPE, text=True, check=False)
     print(done.stdout)

@@ -14,10 +14,14 @@ import tempfile
 
 
 def main(program, kind, batch, batches):
-    # The exit code of the list is the number of cases.
-    listed = subprocess.run([program, "--list-test-names-only"], capture_output=True, text=True, check=False).stdout
-    cases = [name for name in listed.splitlines() if name and ("(long)" in name) == (kind == "long")]
-    cases = cases[int(batch) - 1 :: int(batches)]
+    listed = subprocess.run([program, "--list-test-names-only"], capture_output=True, text=True, check=False)
+    names = [name for name in listed.stdout.splitlines() if name]
+    # The exit code of the list is the number of cases, at most 255.
+    if not names or listed.returncode != min(len(names), 255):
+        print(f"{program} lists {len(names)} cases and ends with exit code {listed.returncode}")
+        print(listed.stderr)
+        return 1
+    cases = [name for name in names if ("(long)" in name) == (kind == "long")][int(batch) - 1 :: int(batches)]
     if not cases:
         return 0
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as file:

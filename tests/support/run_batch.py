@@ -27,11 +27,16 @@ def main(program, kind, batch, batches):
     with tempfile.NamedTemporaryFile("w", suffix=".txt", encoding="utf-8") as file:
         file.write("".join(name.replace(",", "\\,") + "\n" for name in cases))
         file.flush()
-        done = subprocess.run([program, "--input-file", file.name], stdout=subprocess.PIPE, text=True, check=False)
-    print(done.stdout)
-    if done.returncode != 0:
+        # Each line is passed on when it comes: after a timeout the last one names the case that ended last.
+        command = [program, "--durations", "yes", "--input-file", file.name]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            lines = []
+            for line in process.stdout:
+                lines.append(line)
+                print(line, end="", flush=True)
+    if process.returncode != 0:
         return 1
-    number = re.search(r"in (\d+) test cases?\)", done.stdout)
+    number = re.search(r"in (\d+) test cases?\)", "".join(lines))
     if number is None or int(number[1]) != len(cases):
         print(f"{len(cases)} cases were to run")
         return 1

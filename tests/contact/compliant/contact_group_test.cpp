@@ -83,7 +83,8 @@ long near_pairs(const dae::Model& model, const lie::State& x)
 
 }  // namespace
 
-TEST_CASE("a pile with a neighbour list moves as with all pairs, to the bit", "[contact][groups][neighbours]")
+TEST_CASE("a pile with a neighbour list moves as with all pairs, to the bit (long)",
+          "[contact][groups][neighbours]")
 {
     const dae::Description all = started(cube(3, 1.5, false)), near = started(cube(3, 1.5, true));
     REQUIRE(all.model->forces().size() == 27 + 351);

@@ -12,6 +12,7 @@ const std::vector<FeatureText>& all_features()
         {Feature::regularised, "implicit_friction", "implicit friction"},
         {Feature::nonholonomic, "rolling", "rolling without slip"},
         {Feature::redundant, "redundant_rows", "redundant rows (\"redundant\": \"keep\" in the model file)"},
+        {Feature::cones, "rigid_contacts", "rigid contacts (\"normal\": {\"type\": \"dvi\"})"},
         {Feature::history, "history", "loads with a history (friction, plasticity)"},
         {Feature::springs, "implicit_springs", "implicit springs (\"implicit\": true of a force)"}};
     return all;
@@ -33,6 +34,7 @@ Features features_of(const System& system)
     if (!rows.regularised.empty()) found.add(Feature::regularised);
     if (rows.velocity_rows > 0) found.add(Feature::nonholonomic);
     if (system.keeps_redundant_rows()) found.add(Feature::redundant);
+    if (system.has_cones()) found.add(Feature::cones);
     return found;
 }
 

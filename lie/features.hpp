@@ -19,6 +19,7 @@ enum class Feature : unsigned {
     regularised,   ///< regularised rows with a bound (BoundedPair): implicit friction
     nonholonomic,  ///< nonholonomic rows: rolling without slip
     redundant,     ///< rows that may be dependent, see System::keeps_redundant_rows()
+    cones,         ///< rigid contacts with Coulomb friction, see System::cones()
     history,       ///< loads that depend on a history, see System::internal_states_are_history()
     springs        ///< implicit evaluation of System::spring_pattern(), see ImplicitSprings
 };

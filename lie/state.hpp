@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "lie/cones/cone_rows.hpp"
 #include "lie/so3.hpp"
 
 #include <memory>
@@ -46,6 +47,9 @@ struct State {
     /// frame, at the centre of mass] and n̄ [N m, body frame] of each body. They are constant during a step.
     /// Empty: none
     std::vector<double> applied_loads;
+    /// The forces of the contact points of System::cones() in the step to t, in ascending order of their
+    /// keys. Empty at a start and without rigid contacts
+    std::vector<ConeForce> cone_forces = {};
     /// What the system derives from the other members; not part of checkpoints. Empty: the system derives it
     /// when it needs it.
     std::shared_ptr<const DerivedLists> derived = nullptr;

@@ -13,11 +13,13 @@
 /// - Nonholonomic rows Φ_r ṙ + Π̄ ω̄ = ν, which have no Φ. They are the last rows. Example: ideal rolling.
 /// - Regularised rows: pairs of nonholonomic rows with a compliance and a bound (BoundedPair). Implicit
 ///   friction uses them.
+/// - Cones: rigid contact points with Coulomb friction, whose number changes (ConeRows).
 /// - Unilateral rows, which are inactive in some states. Φ, Φ_r and Π̄ of an inactive row are zero.
 
 #pragma once
 
 #include "lie/bounded_pair.hpp"
+#include "lie/cones/cone_rows.hpp"
 #include "lie/loads.hpp"
 #include "lie/rows.hpp"
 #include "lie/state.hpp"
@@ -70,6 +72,15 @@ public:
     virtual std::vector<BoundedPair> bounded_pairs() const { return {}; }
     /// Sets K, D, mu, S, n and solved_first of the pairs in the state x; `pair` is a copy of bounded_pairs().
     virtual void update_pairs(const State& /*x*/, std::vector<BoundedPair>& /*pair*/) const {}
+
+    /// Whether the system has rigid contacts. The default is none.
+    virtual bool has_cones() const { return false; }
+    /// Sets the contact points that may close in a step h [s] from x: those whose gap is smaller than h times
+    /// the speed of approach of their bodies, and those that overlap. Keeps the memory of `out`. Throws
+    /// NumericalFailure if the contact points of a pair are not found.
+    virtual void cones(const State& /*x*/, double /*h*/, ConeRows& out) const { out.cone.clear(); }
+    /// Name of a contact point for messages
+    virtual std::string cone_name(std::uint64_t /*key*/) const { return "contact point"; }
 
     /// The springs and dampers that half-implicit schemes evaluate implicitly. Their values are not used. The
     /// default is none.

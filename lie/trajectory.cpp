@@ -171,6 +171,7 @@ void TrajectoryRecorder::accepted(const State& node, long n, int /*iterations*/)
                               .internal_state = node.internal_state,
                               .history = {},
                               .applied_loads = node.applied_loads,
+                              .cone_forces = node.cone_forces,
                               .derived = node.derived});
 }
 

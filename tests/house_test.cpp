@@ -99,7 +99,7 @@ const std::map<std::string, FolderOrder> ordered_rooms = {
 /// The folders of each room, relative to it; "" is the room itself.
 const std::map<std::string, std::set<std::string>> folders = {
     {"io", {"", "arithmetic", "formats", "schema"}},
-    {"lie", {"", "integrators", "solver", "steps", "tree"}},
+    {"lie", {"", "cones", "integrators", "solver", "steps", "tree"}},
     {"dae", {"", "constraints", "curves", "forces", "joints", "outputs", "start"}},
     {"contact",
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "scenes",

@@ -56,7 +56,8 @@ private:
              .discrete_state = {},
              .internal_state = {},
              .history = {},
-             .applied_loads = {}};
+             .applied_loads = {},
+             .cone_forces = {}};
 };
 
 }  // namespace hilda::lie

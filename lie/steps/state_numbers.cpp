@@ -12,6 +12,7 @@ void copy(const State& from, State& to)
     to.discrete_state = from.discrete_state;
     to.internal_state = from.internal_state;
     to.applied_loads = from.applied_loads;
+    to.cone_forces = from.cone_forces;
     to.derived = from.derived;
 }
 

@@ -7,7 +7,7 @@ namespace hilda::run {
 
 namespace {
 
-constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 13};
+constexpr io::Archive::Format format = {.letters = "HILDACKP", .version = 14};
 
 /// Writes or reads the content of a checkpoint
 void transfer(io::Archive& a, Checkpoint& c)

@@ -24,11 +24,13 @@ void transfer(io::Archive& a, contact::ContactEvent& e)
 
 void transfer_state(io::Archive& a, lie::State& x)
 {
+    static_assert(sizeof(lie::ConeForce) == 5 * sizeof(double), "a ConeForce must not have padding");
     static_assert(sizeof(lie::Motion) == 24 * sizeof(double),
                   "a motion must consist of 24 numbers without padding");
     a.value(x.t);
     a.list(x.body), a.list(x.alpha), a.list(x.lambda);
-    a.list(x.discrete_state), a.list(x.internal_state), a.list(x.history), a.list(x.applied_loads);
+    a.list(x.discrete_state), a.list(x.internal_state), a.list(x.history), a.list(x.applied_loads),
+        a.list(x.cone_forces);
 }
 
 void transfer(io::Archive& a, SimulationRecord& r)

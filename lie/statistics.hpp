@@ -13,6 +13,11 @@ struct Statistics {
     long refactorizations = 0;  ///< with earlier pivots of KLU, or by the condensed solver
     double correction = 0;      ///< norm of the last correction, in the units of Settings::tolerance
     double condition = 1;       ///< reciprocal condition of the last matrix; 1 for a scheme without matrix
+    long cone_iterations = 0;   ///< of the methods for rigid contacts
+    long cone_factorizations = 0;
+    double cone_residual = 0;  ///< largest residual of the contact law [m/s]
+    long friction_relaxed =
+        0;  ///< steps in which sliding satisfies the contact law with a slip term of its own
 
     double iterations_per_step() const
     {

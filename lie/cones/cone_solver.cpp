@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lie/cones/cone_solver.hpp"
+
+#include "lie/check.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hilda::lie {
+
+namespace {
+
+constexpr int most_admm = 300, most_newton = 50, most_passes = 20, depth = 5;
+// in units of rounding()
+constexpr double least_rounding = 4, most_rounding = 64;
+constexpr double good = 1e-3;  // part of the acceptable residual
+
+/// Rounding error of the residual: that of the velocities which the impulses cause
+double rounding(const ConeProblem& problem, const ConeProblem::Iterate& x)
+{
+    double largest = 0;
+    for (int c = 0; c < problem.contacts(); ++c) largest = std::max(largest, problem.g[c] * x.p[c].norm());
+    return std::numeric_limits<double>::epsilon() * largest;
+}
+
+}  // namespace
+
+ConeSolver::ConeSolver(const Mass& mass, const Rows& pattern) : joints(mass, pattern), matrix(mass, pattern)
+{}
+
+void ConeSolver::start(ConeProblem& problem)
+{
+    problem.set_scales();
+    if (problem.C_b->rows() > 0) joints.factor_joints(problem);
+}
+
+void ConeSolver::set_velocities(const ConeProblem& problem, Iterate& x)
+{
+    b.resize(problem.unknowns());
+    x.y.resize(problem.unknowns());
+    problem.set_right_side(x.p, b);
+    if (problem.C_b->rows() > 0) {
+        joints.solve(b, x.y);
+        return;
+    }
+    for (int i = 0; i < problem.bodies(); ++i)
+        x.y.segment<6>(6 * i) = problem.by_mass(i, b.segment<6>(6 * i));
+}
+
+ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, const Tolerances& to)
+{
+    x.offset.resize(x.p.size());
+    set_velocities(problem, x);
+    x.residual = problem.residual(x);
+    if (x.residual <= std::max(to.start, most_rounding * rounding(problem, x)))
+        return {.residual = x.residual};
+
+    other.residual = std::numeric_limits<double>::infinity();
+    matrix.set_contacts(problem);
+    count += admm.solve(problem, matrix, x, to.result, least_rounding * rounding(problem, x), most_admm);
+    const double tolerance =
+        std::max({to.result, most_rounding * rounding(problem, x), good * to.acceptable});
+    if (!(x.residual <= tolerance)) {
+        try {
+            solve_by_newton(problem, x, tolerance);
+            if (!(x.residual <= tolerance)) solve_by_fixed_point(problem, x, tolerance);
+        } catch (const NumericalFailure&) {
+            // a matrix that is not finite; the best iterate remains
+        }
+    }
+    Outcome outcome{.residual = x.residual};
+    if (x.residual <= std::max(to.acceptable, tolerance)) return outcome;
+    outcome.worst = problem.worst_contact(x);
+    if (other.residual <= to.acceptable && problem.convex_residual(other) <= to.acceptable) {
+        x = other;
+        outcome.residual = problem.residual(x);
+        outcome.worst = problem.worst_contact(x);
+        outcome.status = Status::friction_relaxed;
+    } else {
+        outcome.status = Status::failed;
+    }
+    return outcome;
+}
+
+/// Keeps `other`, a result of `newton`, in x if its residual of the law and of the momenta is smaller.
+void ConeSolver::keep_better(const ConeProblem& problem, Iterate& x)
+{
+    const double residual = std::max(problem.residual(other), other.residual);
+    if (!(residual < x.residual)) return;
+    x = other;
+    x.residual = residual;
+}
+
+/// From the result of ADMM, which has the active contacts mostly, then from the interior point
+void ConeSolver::solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance)
+{
+    other = x;
+    count += newton.solve(problem, matrix, other, tolerance,
+                          {.rho = 1e-3, .most_outer = 3, .most_inner = 4, .coulomb = true, .reduction = 0.1});
+    keep_better(problem, x);
+    if (x.residual <= tolerance) return;
+    other = x;
+    for (int c = 0; c < problem.contacts(); ++c) other.offset[c] = problem.beta[c];
+    count += interior_point.solve(problem, matrix, other, 1e-7);
+    other.residual = std::numeric_limits<double>::infinity();
+    count += newton.solve(
+        problem, matrix, other, tolerance,
+        {.rho = 1e-3, .most_outer = most_newton, .most_inner = 30, .coulomb = true, .reduction = 0.1});
+    keep_better(problem, x);
+}
+
+/// Each pass solves the convex problem for the slip terms s. The next ones are those of Anderson (1965) for
+/// the iteration s ← μ |u_t|.
+void ConeSolver::solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance)
+{
+    const int n = problem.contacts();
+    Eigen::MatrixXd change_s(n, depth), change_f(n, depth);
+    Eigen::VectorXd s(n), f(n), s_before(n), f_before(n);
+    other = x;
+    for (int c = 0; c < n; ++c) s[c] = problem.slip_term(c, problem.u(c, x.y));
+    for (int pass = 0; pass < most_passes; ++pass) {
+        for (int c = 0; c < n; ++c) other.offset[c] = problem.beta[c] + s[c];
+        count += interior_point.solve(problem, matrix, other, 1e-7);
+        other.residual = std::numeric_limits<double>::infinity();
+        count += newton.solve(problem, matrix, other, 0.1 * tolerance,
+                              {.rho = 1e-4, .most_outer = 10, .most_inner = 20, .reduction = 0.3});
+        keep_better(problem, x);
+        if (x.residual <= tolerance) return;
+        for (int c = 0; c < n; ++c) f[c] = problem.slip_term(c, problem.u(c, other.y)) - s[c];
+        Eigen::VectorXd next = s + f;
+        if (pass > 0) {
+            change_s.col((pass - 1) % depth) = s - s_before;
+            change_f.col((pass - 1) % depth) = f - f_before;
+            const int used = std::min(pass, depth);
+            const Eigen::VectorXd theta = change_f.leftCols(used).colPivHouseholderQr().solve(f);
+            next -= (change_s.leftCols(used) + change_f.leftCols(used)) * theta;
+        }
+        s_before = s;
+        f_before = f;
+        s = next.cwiseMax(0);
+    }
+}
+
+}  // namespace hilda::lie

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Solver of the cone problem with Coulomb's law.
+///
+/// 1. Start: the given impulses, e.g. those of the last step, with the velocities that they cause. Contacts
+///    at rest or in steady sliding need no more than this.
+/// 2. ADMM, up to 300 iterations.
+/// 3. Interior point method for the convex problem with the slip terms of 2, then the proximal Newton method
+///    with slip updates, up to 50 outer iterations.
+/// 4. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
+///    depth 5.
+///
+/// The result is the iterate with the smallest residual. Steps 3 and 4 end at 10⁻³ of the acceptable
+/// residual, if the tolerance is smaller. A result above the acceptable residual is an error, unless the
+/// convex problem with the last slip terms is solved: the result then satisfies the law with a slip term that
+/// differs from μ |u_t| (friction_relaxed).
+
+#pragma once
+
+#include "lie/cones/body_matrix.hpp"
+#include "lie/cones/cone_admm.hpp"
+#include "lie/cones/cone_interior_point.hpp"
+#include "lie/cones/cone_newton.hpp"
+#include "lie/cones/cone_problem.hpp"
+
+#include <vector>
+
+namespace hilda::lie {
+
+class ConeSolver {
+public:
+    using Iterate = ConeProblem::Iterate;
+
+    enum class Status { solved, friction_relaxed, failed };
+
+    struct Outcome {
+        Status status = Status::solved;
+        double residual = 0;  ///< [m/s; rad/s]
+        int worst = -1;       ///< contact point with the largest residual
+    };
+
+    ConeSolver(const Mass& mass, const Rows& pattern);
+
+    /// Factors the matrix of the joints for the rows of the problem. Called once before solve() for each
+    /// configuration.
+    void start(ConeProblem& problem);
+    /// y = (v, λ) for the impulses p. The velocities without contacts are those for p = 0.
+    void set_velocities(const ConeProblem& problem, Iterate& x);
+    /// Residuals [m/s]
+    struct Tolerances {
+        double start;   ///< of the impulses of x that are taken as they are
+        double result;  ///< of ADMM
+        double acceptable = 1e-6;
+    };
+    /// Solves the problem from the impulses of x, one for each contact point, to the tolerances or to
+    /// rounding errors. Sets x.
+    Outcome solve(const ConeProblem& problem, Iterate& x, const Tolerances& to);
+
+    long iterations() const { return count; }  ///< of all methods
+    long factorizations() const { return joints.factorizations() + matrix.factorizations(); }
+
+private:
+    void solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance);
+    void solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance);
+    void keep_better(const ConeProblem& problem, Iterate& x);
+
+    BodyMatrix joints, matrix;
+    ConeAdmm admm;
+    ConeInteriorPoint interior_point;
+    ConeNewton newton;
+    Iterate other;
+    Eigen::VectorXd b;
+    long count = 0;
+};
+
+}  // namespace hilda::lie

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The rigid contact points of a step, and the velocities and impulses at its end.
+
+#pragma once
+
+#include "lie/cones/cone_solver.hpp"
+#include "lie/state.hpp"
+#include "lie/statistics.hpp"
+
+#include <string>
+#include <vector>
+
+namespace hilda::lie {
+
+class System;
+
+/// The cone problem of a time-stepping scheme. From the contact points at t_n it takes
+///
+///     β = max(g, 0)/h, or e u_n(v_n) < 0 if the contact closes within the step and if this is smaller
+///     μ = μ_k for a contact point that slipped in the step before, μ_s for the others
+///     p = h F of the step before as initial guess, rotated into the present axes
+///
+/// An overlap g < 0 does not enter β: g/h would throw the bodies apart. The contact closes within the step if
+/// u_n + g/h < 0 for the velocities of a step without contacts.
+class ContactStep {
+public:
+    /// `tolerance`: of the contact law [m/s]. `scheme`: its name, for messages
+    ContactStep(const System& system, double tolerance, std::string scheme);
+
+    /// Finds the contact points of a step h from x, and the joint rows if there are any. x must remain
+    /// unchanged until set_forces(). Returns whether there are contact points.
+    bool find(const State& x, double h);
+    bool empty() const { return contacts.cone.empty(); }
+    /// The joint rows at t_n, if there are contact points
+    const Rows& rows() const { return C; }
+
+    /// The velocities v of all bodies at the end of the step, then h λ, for
+    ///
+    ///     M v + C_bᵀ h λ - Σ C_cᵀ p_c = q,   C_b v = ν
+    ///
+    /// `right` is h (q, ν). A step may call it several times, with `first` for the first time: the impulses
+    /// before are then the initial guess. Throws NumericalFailure "cones_not_solved".
+    const Eigen::VectorXd& solve(bool first, const Eigen::VectorXd& right);
+
+    /// The forces of the contact points, p/h, and whether they slip. Ends the step: counts it.
+    void set_forces(State& x);
+    /// Adds the counters of the cone problems.
+    void count(Statistics& all) const;
+
+private:
+    void start();
+    void set_rebounds();
+    bool is_steady();
+    double rounding_of_gap(const ConeRows::Cone& cone) const;
+    [[noreturn]] void fail(const ConeSolver::Outcome& outcome) const;
+
+    const System& system;
+    const double tolerance;
+    const std::string scheme;
+    Rows C;
+    ConeRows contacts;
+    std::vector<char> slipped;  ///< whether each contact point slipped in the last step
+    ConeProblem problem;
+    ConeSolver solver;
+    ConeSolver::Iterate iterate, without_contacts;
+    Eigen::VectorXd y_n;
+    const State* x_n = nullptr;
+    double h = 0;
+    double start_tolerance = 0;
+    double residual = 0, worst_residual = 0;
+    bool is_relaxed = false;  ///< whether the last solution has the status friction_relaxed
+    long relaxed_steps = 0;
+};
+
+}  // namespace hilda::lie

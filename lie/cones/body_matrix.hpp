@@ -6,8 +6,8 @@
 ///
 /// With symmetric, positive semidefinite W_c it is quasi-definite: every order of elimination has diagonal
 /// pivots that are not zero (Vanderbei 1995). The other W_c, those of Newton's method for Coulomb's law,
-/// differ from such ones by terms of rank one. ε keeps the pivots of dependent joint rows away from zero. solve() removes its effect by one step of
-/// iterative refinement.
+/// differ from such ones by terms of rank one. ε keeps the pivots of dependent joint rows away from
+/// zero. solve() removes its effect by one step of iterative refinement.
 ///
 /// The order is a minimum degree order of the bodies, by AMD. The rows of a joint follow the last of their
 /// bodies: their pivots are then those of -C_b (M + …)⁻¹ C_bᵀ and not ε.

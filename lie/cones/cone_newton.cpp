@@ -15,7 +15,7 @@ int ConeNewton::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x
     W.resize(x.p.size());
     p = x.p;
     int factored = 0;
-    for (int outer = 0; outer < options.most_outer; ++outer) {
+    for (int outer = 0; outer < options.most_outer && factored < options.most_factorizations; ++outer) {
         centre = x.p;
         offset = x.offset;
         set_impulses(problem, x.y);

@@ -29,6 +29,7 @@ public:
     struct Options {
         double rho = 1e-4;
         int most_outer = 20, most_inner = 60;
+        int most_factorizations = 60;
         bool coulomb = false;  ///< Coulomb's law; otherwise the convex problem with the offsets of x
         double reduction = 1;  ///< of ρ after each outer iteration
     };

@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace hilda::lie {
@@ -63,10 +65,12 @@ struct ConeProblem {
         return of;
     }
     double slip_term(int c, const Vec3& of_u) const { return mu[c] * std::hypot(of_u[1], of_u[2]); }
-    /// |p - Π(p - w/g)| g of contact point c for the impulse p and the velocity w
+    /// |p - Π(p - w/g)| g of contact point c for the impulse p and the velocity w, at least its rounding
+    /// error: without it, impulses of 10¹⁶ N s would solve problems that have no solution
     double natural_map(int c, const Vec3& p, const Vec3& w) const
     {
-        return g[c] * (p - project_on_cone(p - w / g[c], mu[c])).norm();
+        const double error = (p - project_on_cone(p - w / g[c], mu[c])).norm();
+        return g[c] * std::max(error, std::numeric_limits<double>::epsilon() * p.norm());
     }
     /// out += factor C_cᵀ p
     void add_impulse(int c, const Vec3& p, Eigen::VectorXd& out) const;

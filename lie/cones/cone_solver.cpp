@@ -16,7 +16,8 @@ namespace {
 constexpr int most_admm = 300, most_newton = 50, most_passes = 20, depth = 5;
 // in units of rounding()
 constexpr double least_rounding = 4, most_rounding = 64;
-constexpr double good = 1e-3;  // part of the acceptable residual
+// parts of the acceptable residual: at which Newton's method ends, and without which the fixed point is tried
+constexpr double good = 1e-3, sufficient = 0.1;
 
 /// Rounding error of the residual: that of the velocities which the impulses cause
 double rounding(const ConeProblem& problem, const ConeProblem::Iterate& x)
@@ -55,24 +56,26 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
     x.offset.resize(x.p.size());
     set_velocities(problem, x);
     x.residual = problem.residual(x);
-    if (x.residual <= std::max(to.start, most_rounding * rounding(problem, x)))
-        return {.residual = x.residual};
+    const auto at_least = [&](double tolerance) {
+        return std::min(std::max(tolerance, most_rounding * rounding(problem, x)), to.acceptable);
+    };
+    if (x.residual <= at_least(to.start)) return {.residual = x.residual};
 
     other.residual = std::numeric_limits<double>::infinity();
     matrix.set_contacts(problem);
     count += admm.solve(problem, matrix, x, to.result, least_rounding * rounding(problem, x), most_admm);
-    const double tolerance =
-        std::max({to.result, most_rounding * rounding(problem, x), good * to.acceptable});
+    const double tolerance = at_least(std::max(to.result, good * to.acceptable));
     if (!(x.residual <= tolerance)) {
         try {
             solve_by_newton(problem, x, tolerance);
-            if (!(x.residual <= tolerance)) solve_by_fixed_point(problem, x, tolerance);
+            if (!(x.residual <= std::max(tolerance, sufficient * to.acceptable)))
+                solve_by_fixed_point(problem, x, tolerance);
         } catch (const NumericalFailure&) {
             // a matrix that is not finite; the best iterate remains
         }
     }
     Outcome outcome{.residual = x.residual};
-    if (x.residual <= std::max(to.acceptable, tolerance)) return outcome;
+    if (x.residual <= to.acceptable) return outcome;
     outcome.worst = problem.worst_contact(x);
     if (other.residual <= to.acceptable && problem.convex_residual(other) <= to.acceptable) {
         x = other;

@@ -4,15 +4,15 @@
 /// 1. Start: the given impulses, e.g. those of the last step, with the velocities that they cause. Contacts
 ///    at rest or in steady sliding need no more than this.
 /// 2. ADMM, up to 300 iterations.
-/// 3. Interior point method for the convex problem with the slip terms of 2, then the proximal Newton method
-///    with slip updates, up to 50 outer iterations.
+/// 3. Proximal Newton method for Coulomb's law from the result of 2, and from that of the interior point
+///    method for the convex problem without slip terms.
 /// 4. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
 ///    depth 5.
 ///
 /// The result is the iterate with the smallest residual. Steps 3 and 4 end at 10⁻³ of the acceptable
-/// residual, if the tolerance is smaller. A result above the acceptable residual is an error, unless the
-/// convex problem with the last slip terms is solved: the result then satisfies the law with a slip term that
-/// differs from μ |u_t| (friction_relaxed).
+/// residual, if the tolerance is smaller, and step 4 is left out below 10⁻¹ of it. A result above the
+/// acceptable residual is an error, unless the convex problem with the last slip terms is solved: the result
+/// then satisfies the law with a slip term that differs from μ |u_t| (friction_relaxed).
 
 #pragma once
 

@@ -4,7 +4,6 @@
 #include "lie/system.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace hilda::lie {
 
@@ -16,30 +15,36 @@ constexpr int most_corrections = 5;
 
 }  // namespace
 
-OverlapCorrection::OverlapCorrection(const System& system)
-    : system(system), C(system.pattern()), problem(system.mass(), C), of_positions(system.mass(), C)
+OverlapCorrection::OverlapCorrection(const System& system, double tolerance)
+    : system(system), tolerance(tolerance), C(system.pattern()), problem(system.mass(), C),
+      of_positions(system.mass(), C)
 {}
 
-bool OverlapCorrection::correct(State& x)
+bool OverlapCorrection::correct(State& x, double h)
 {
     problem.C_b = &C;
-    for (int n = 0; n < most_corrections; ++n) {
-        system.cones(x, 0, overlapping);
-        double largest = 0, size = std::numeric_limits<double>::infinity();
-        for (const ConeRows::Cone& cone : overlapping.cone) {
-            largest = std::max(largest, -cone.gap / cone.size);
-            size = std::min(size, cone.size);
+    for (int n = 0;; ++n) {
+        system.cones(x, 0, contacts);
+        double largest = 0, size = 1;
+        for (const ConeRows::Cone& cone : contacts.cone) largest = std::max(largest, -cone.gap / cone.size);
+        const bool overlap_remains = largest > allowed;
+        if ((!overlap_remains && n == 0) || n == most_corrections) {
+            remaining_overlap = std::max(remaining_overlap, largest);
+            return true;
         }
-        if (!(largest > allowed)) return true;
-        system.variation(x, C);
         system.phi(x, problem.nu);
+        const bool open_joint = problem.nu.size() > 0 && problem.nu.lpNorm<Eigen::Infinity>() > tolerance;
+        if (!overlap_remains && !open_joint) return true;
+        system.cones(x, h, contacts);
+        for (const ConeRows::Cone& cone : contacts.cone) size = std::min(size, cone.size);
+        system.variation(x, C);
         problem.nu *= -1;
         problem.q.setZero();
-        problem.cones = &overlapping.cone;
-        problem.mu.assign(overlapping.cone.size(), 0);
-        problem.beta.resize(overlapping.cone.size());
-        iterate.p.assign(overlapping.cone.size(), Vec3::Zero());
-        for (int c = 0; c < problem.contacts(); ++c) problem.beta[c] = overlapping.cone[c].gap;
+        problem.cones = &contacts.cone;
+        problem.mu.assign(contacts.cone.size(), 0);
+        problem.beta.resize(contacts.cone.size());
+        iterate.p.assign(contacts.cone.size(), Vec3::Zero());
+        for (int c = 0; c < problem.contacts(); ++c) problem.beta[c] = contacts.cone[c].gap;
         of_positions.start(problem);
         const double overlap = allowed * size;
         if (of_positions.solve(problem, iterate, {of_tolerance * overlap, of_tolerance * overlap, overlap})
@@ -47,7 +52,6 @@ bool OverlapCorrection::correct(State& x)
             return false;
         move(x);
     }
-    return true;
 }
 
 void OverlapCorrection::move(State& x) const

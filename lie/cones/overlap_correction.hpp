@@ -18,23 +18,29 @@ class System;
 
 class OverlapCorrection {
 public:
-    explicit OverlapCorrection(const System& system);
+    /// `tolerance`: of Φ after a correction [m or rad]
+    OverlapCorrection(const System& system, double tolerance);
 
-    /// Corrects the poses of x until no overlap exceeds 10⁻⁹ of Cone::size, at most five times. Returns false
-    /// if a correction was not found; the poses are then those before it.
-    bool correct(State& x);
+    /// Corrects the poses of x until no overlap exceeds 10⁻⁹ of Cone::size and the joints are closed, at most
+    /// five times. The gaps of the contact points in reach of a step h remain positive. Returns false if a
+    /// correction was not found; the poses are then those before it.
+    bool correct(State& x, double h);
 
+    /// Largest overlap after a correction, relative to Cone::size
+    double remaining() const { return remaining_overlap; }
     const ConeSolver& solver() const { return of_positions; }
 
 private:
     void move(State& x) const;
 
     const System& system;
+    const double tolerance;
     Rows C;
-    ConeRows overlapping;
+    ConeRows contacts;
     ConeProblem problem;
     ConeSolver of_positions;
     ConeSolver::Iterate iterate;
+    double remaining_overlap = 0;
 };
 
 }  // namespace hilda::lie

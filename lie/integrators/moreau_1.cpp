@@ -4,8 +4,8 @@
 ///                                 Nonsmooth Dynamical Systems, Ch. 10
 ///
 ///     M ṙ_{n+1} + h Φ_rᵀ λ - Σ_c C_cᵀ p_c = M ṙ_n + h F_n,     r_{n+1} = r_n + h ṙ_{n+1}
-///     J_r(θ)⁻¹ J̄ ω̄_{n+1} + h Π̄ᵀ λ - Σ_c C_cᵀ p_c = J_r(-θ')⁻¹ J̄ ω̄_n + h n̄_n,     θ = h ω̄_{n+1}, θ' = h ω̄_n
-///     A_{n+1} = A_n exp(θ̃),     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0,     C_b v_{n+1} = ν for nonholonomic rows
+///     J_r(θ)⁻¹ J̄ ω̄_{n+1} + h Π̄ᵀ λ - Σ_c C_cᵀ p_c = J_r(-θ')⁻¹ J̄ ω̄_n + h n̄_n
+///     θ = h ω̄_{n+1},  θ' = h ω̄_n,    A_{n+1} = A_n exp(θ̃),     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0,     C_b v_{n+1} = ν for nonholonomic rows
 ///     p_c ∈ K_μ,   û_c = u_c + (μ |u_t| + β) n ∈ K_μ*,   p_c · û_c = 0,   u_c = C_c v_{n+1}
 ///     β = max(g, 0)/h, or e u_n(v_n) < 0 if the contact closes within the step and if this is smaller
 ///
@@ -13,14 +13,14 @@
 /// the bodies apart. It is removed at the end of the step by OverlapCorrection, which does not change
 /// velocities.
 ///
-/// The rotations are those of rA-half-1-momentum: the angular momentum J_r(θ)⁻¹ J̄ ω̄_{n+1} at the beginning of
-/// the step and J_r(-θ')⁻¹ J̄ ω̄_n at the end of the step before belong to the node t_n. They contain the
+/// The rotations are those of rA-half-1-momentum: the angular momentum J_r(θ)⁻¹ J̄ ω̄_{n+1} at the beginning
+/// of the step and J_r(-θ')⁻¹ J̄ ω̄_n at the end of the step before belong to the node t_n. They contain the
 /// gyroscopic torque. For a free body the angular momentum of the nodes is constant to rounding.
 ///
 /// The unknowns are z = (h v_{n+1}, h² λ). The iteration has the frozen matrix of t_n. Its right side
-/// receives -Φ of the iterate, and the difference of the angular momenta J_r(θ)⁻¹ J̄ θ and J̄ θ. Each iteration
-/// solves the cone problem again, from its last impulses. Without contact points in reach the matrix is the
-/// saddle matrix K.
+/// receives -Φ of the iterate, and the difference of the angular momenta J_r(θ)⁻¹ J̄ θ and J̄ θ. Each
+/// iteration solves the cone problem again, from its last impulses. Without contact points in reach the
+/// matrix is the saddle matrix K.
 ///
 /// The impulses are those of the step to t_{n+1}: λ, r̈ = (ṙ_{n+1} - ṙ_n)/h, ω̄̇ and State::cone_forces of the
 /// result are mean values over the step. μ is μ_s for a contact point that did not slip in the step before or
@@ -42,7 +42,7 @@ class Moreau1 final : public SaddleStep {
 public:
     Moreau1(const System& model, const Settings& settings)
         : SaddleStep(model, settings), contacts(model, of_settings * settings.tolerance, name),
-          overlaps(model), right(K.size())
+          overlaps(model, settings.tolerance), right(K.size()), before(K.size())
     {}
 
     int step(State& x, double h) override
@@ -56,20 +56,12 @@ public:
         set_known_part(h);
         predict(h, h * h, h * h);
         x.t = x_n.t + h;
+        place_increments(x);
+        set_right_side(x, h);
         for (int k = 1; k <= most_iterations; ++k) {
-            place_increments(x);
-            set_right_side(x, h);
-            if (contacts.empty())
-                solve_joints();
-            else
-                e = h * contacts.solve(k == 1, right) - z;
-            z += e;
-            // The multipliers are not unique if friction clamps a joint.
-            const double of_multipliers = contacts.empty() ? 1 : 0;
-            if (converged(k, length_of_motion(e), constraint_part(e), of_multipliers)) {
-                accept(x, h);
-                return done(attempt, k);
-            }
+            if (!(contacts.empty() ? correct(k, x, h) : solve_contacts(k, x, h))) continue;
+            accept(x, h);
+            return done(attempt, k);
         }
         no_convergence(name, correction, x);
     }
@@ -78,6 +70,7 @@ public:
     {
         Statistics all = statistics_with(K);
         contacts.count(all);
+        all.overlap = overlaps.remaining();
         all.cone_iterations += overlaps.solver().iterations();
         all.cone_factorizations += overlaps.solver().factorizations();
         return all;
@@ -114,11 +107,34 @@ private:
         of_rows.tail(C.velocity_rows) = h * nu.tail(C.velocity_rows);
     }
 
-    void solve_joints()
+    /// A correction of z without contact points. Returns whether it was the last one.
+    bool correct(int k, State& x, double h)
     {
         K.multiply(z, e);
         e = right - e;
         K.solve(e);
+        z += e;
+        if (converged(k, length_of_motion(e), constraint_part(e), 1)) return true;
+        place_increments(x);
+        set_right_side(x, h);
+        return false;
+    }
+
+    /// The solution z of the cone problem, and the right side at its poses. Returns whether the right side
+    /// has changed by less than the tolerance. z itself may change more: friction can clamp bodies with
+    /// joints in several ways.
+    bool solve_contacts(int k, State& x, double h)
+    {
+        z = h * contacts.solve(k == 1, right);
+        place_increments(x);
+        before = right;
+        set_right_side(x, h);
+        e = right - before;
+        for (int i = 0; i < bodies; ++i) {
+            e.segment<3>(6 * i) /= mass.m[i];
+            e.segment<3>(6 * i + 3) = J_bar_inverse[i] * e.segment<3>(6 * i + 3);
+        }
+        return converged(k, e.norm(), constraint_part(e), 0);
     }
 
     void accept(State& x, double h)
@@ -137,7 +153,7 @@ private:
         if (contacts.empty()) K.minimise_multipliers(z);
         x.lambda = constraint_part(z) / (h * h);
         contacts.set_forces(x);
-        if (model.has_cones() && !overlaps.correct(x))
+        if (model.has_cones() && !overlaps.correct(x, h))
             throw NumericalFailure("cones_not_solved",
                                    std::string(name) +
                                        ": the overlaps of bodies cannot be corrected with closed joints; "
@@ -150,7 +166,7 @@ private:
 
     ContactStep contacts;
     OverlapCorrection overlaps;
-    Eigen::VectorXd right;
+    Eigen::VectorXd right, before;
 };
 
 const bool registered_moreau_1 = register_scheme<Moreau1>(

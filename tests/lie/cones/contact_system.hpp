@@ -16,7 +16,8 @@ using lie::Vec3;
 
 class ContactSystem : public lie::System {
 public:
-    /// A vertex of body i against the plane n · (point - r_j) = d of body j, with n in the frame of j. j = -1:
+    /// A vertex of body i against the plane n · (point - r_j) = d of body j, with n in the frame of
+    /// j. j = -1:
     /// the ground, with its origin in the place of r_j
     struct VertexPlane {
         int i, j;

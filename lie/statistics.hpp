@@ -15,10 +15,9 @@ struct Statistics {
     double condition = 1;       ///< reciprocal condition of the last matrix; 1 for a scheme without matrix
     long cone_iterations = 0;   ///< of the methods for rigid contacts
     long cone_factorizations = 0;
-    double overlap = 0;        ///< largest one that a correction has left, relative to ConeRows::Cone::size
-    double cone_residual = 0;  ///< largest residual of the contact law [m/s]
-    long friction_relaxed =
-        0;  ///< steps in which sliding satisfies the contact law with a slip term of its own
+    double overlap = 0;         ///< largest one that a correction has left, relative to ConeRows::Cone::size
+    double cone_residual = 0;   ///< largest residual of the contact law [m/s]
+    long friction_relaxed = 0;  ///< steps with ConeSolver::Status::friction_relaxed
 
     double iterations_per_step() const
     {

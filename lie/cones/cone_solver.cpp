@@ -13,7 +13,7 @@ namespace hilda::lie {
 
 namespace {
 
-constexpr int most_admm = 300, most_newton = 50, most_passes = 20, depth = 5;
+constexpr int most_admm = 300, most_patient_admm = 3000, most_newton = 50, most_passes = 20, depth = 5;
 // in units of rounding()
 constexpr double least_rounding = 4, most_rounding = 64;
 // parts of the acceptable residual: at which Newton's method ends, and without which the fixed point is tried
@@ -68,8 +68,12 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
     if (!(x.residual <= tolerance)) {
         try {
             solve_by_newton(problem, x, tolerance);
-            if (!(x.residual <= std::max(tolerance, sufficient * to.acceptable)))
-                solve_by_fixed_point(problem, x, tolerance);
+            const double enough = std::max(tolerance, sufficient * to.acceptable);
+            if (!(x.residual <= enough)) {
+                count += admm.solve(problem, matrix, x, tolerance, tolerance, most_patient_admm);
+                if (!(x.residual <= enough)) solve_by_newton(problem, x, tolerance);
+            }
+            if (!(x.residual <= enough)) solve_by_fixed_point(problem, x, tolerance);
         } catch (const NumericalFailure&) {
             // a matrix that is not finite; the best iterate remains
         }
@@ -77,6 +81,7 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
     Outcome outcome{.residual = x.residual};
     if (x.residual <= to.acceptable) return outcome;
     outcome.worst = problem.worst_contact(x);
+    if (!(other.residual <= to.acceptable)) solve_relaxed(problem, x);
     if (other.residual <= to.acceptable && problem.convex_residual(other) <= to.acceptable) {
         x = other;
         outcome.residual = problem.residual(x);
@@ -88,7 +93,8 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
     return outcome;
 }
 
-/// Keeps `other`, a result of `newton`, in x if its residual of the law and of the momenta is smaller.
+/// Keeps `other`, a result of Newton's method or of the interior point, in x if its residual of the law and
+/// of the momenta is smaller.
 void ConeSolver::keep_better(const ConeProblem& problem, Iterate& x)
 {
     const double residual = std::max(problem.residual(other), other.residual);
@@ -115,6 +121,20 @@ void ConeSolver::solve_by_newton(const ConeProblem& problem, Iterate& x, double 
     keep_better(problem, x);
 }
 
+/// Sets `other` to the solution of the convex problem with the slip terms of x.
+void ConeSolver::solve_relaxed(const ConeProblem& problem, const Iterate& x)
+{
+    other = x;
+    for (int c = 0; c < problem.contacts(); ++c)
+        other.offset[c] = problem.beta[c] + problem.slip_term(c, problem.u(c, x.y));
+    other.residual = std::numeric_limits<double>::infinity();
+    try {
+        count += interior_point.solve(problem, matrix, other, 1e-7);
+    } catch (const NumericalFailure&) {
+        // a matrix that is not finite; other.residual tells it
+    }
+}
+
 /// Each pass solves the convex problem for the slip terms s. The next ones are those of Anderson (1965) for
 /// the iteration s ← μ |u_t|.
 void ConeSolver::solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance)
@@ -127,9 +147,11 @@ void ConeSolver::solve_by_fixed_point(const ConeProblem& problem, Iterate& x, do
     for (int pass = 0; pass < most_passes; ++pass) {
         for (int c = 0; c < n; ++c) other.offset[c] = problem.beta[c] + s[c];
         count += interior_point.solve(problem, matrix, other, 1e-7);
+        const Iterate of_interior_point = other;
         other.residual = std::numeric_limits<double>::infinity();
         count += newton.solve(problem, matrix, other, 0.1 * tolerance,
                               {.rho = 1e-4, .most_outer = 10, .most_inner = 20, .reduction = 0.3});
+        if (!(other.residual <= of_interior_point.residual)) other = of_interior_point;
         keep_better(problem, x);
         if (x.residual <= tolerance) return;
         for (int c = 0; c < n; ++c) f[c] = problem.slip_term(c, problem.u(c, other.y)) - s[c];

@@ -5,7 +5,8 @@
 ///    at rest or in steady sliding need no more than this.
 /// 2. ADMM, up to 300 iterations.
 /// 3. Proximal Newton method for Coulomb's law from the result of 2, and from that of the interior point
-///    method for the convex problem without slip terms.
+///    method for the convex problem without slip terms. If this does not suffice, ADMM with up to 3000
+///    iterations, and Newton's method again.
 /// 4. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
 ///    depth 5.
 ///
@@ -61,6 +62,7 @@ public:
 private:
     void solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance);
     void solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance);
+    void solve_relaxed(const ConeProblem& problem, const Iterate& x);
     void keep_better(const ConeProblem& problem, Iterate& x);
 
     BodyMatrix joints, matrix;

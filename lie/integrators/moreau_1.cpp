@@ -5,7 +5,8 @@
 ///
 ///     M ṙ_{n+1} + h Φ_rᵀ λ - Σ_c C_cᵀ p_c = M ṙ_n + h F_n,     r_{n+1} = r_n + h ṙ_{n+1}
 ///     J_r(θ)⁻¹ J̄ ω̄_{n+1} + h Π̄ᵀ λ - Σ_c C_cᵀ p_c = J_r(-θ')⁻¹ J̄ ω̄_n + h n̄_n
-///     θ = h ω̄_{n+1},  θ' = h ω̄_n,    A_{n+1} = A_n exp(θ̃),     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0,     C_b v_{n+1} = ν for nonholonomic rows
+///     θ = h ω̄_{n+1},  θ' = h ω̄_n,    A_{n+1} = A_n exp(θ̃)
+///     Φ(r_{n+1}, A_{n+1}, t_{n+1}) = 0,     C_b v_{n+1} = ν for nonholonomic rows
 ///     p_c ∈ K_μ,   û_c = u_c + (μ |u_t| + β) n ∈ K_μ*,   p_c · û_c = 0,   u_c = C_c v_{n+1}
 ///     β = max(g, 0)/h, or e u_n(v_n) < 0 if the contact closes within the step and if this is smaller
 ///
@@ -22,9 +23,9 @@
 /// iteration solves the cone problem again, from its last impulses. Without contact points in reach the
 /// matrix is the saddle matrix K.
 ///
-/// The impulses are those of the step to t_{n+1}: λ, r̈ = (ṙ_{n+1} - ṙ_n)/h, ω̄̇ and State::cone_forces of the
-/// result are mean values over the step. μ is μ_s for a contact point that did not slip in the step before or
-/// is new, and μ_k otherwise. r, A, ṙ, ω̄ and λ are of order 1.
+/// The impulses are those of the step to t_{n+1}: λ, r̈ = (ṙ_{n+1} - ṙ_n)/h, ω̄̇ and State::cone_forces of
+/// the result are mean values over the step. μ is μ_s for a contact point that did not slip in the step
+/// before or is new, and μ_k otherwise. r, A, ṙ, ω̄ and λ are of order 1.
 
 #include "lie/check.hpp"
 #include "lie/cones/contact_step.hpp"

@@ -58,3 +58,30 @@ TEST_CASE("the conditions of the contact law hold for stacks and chains with lar
         CHECK(solver.factorizations() - before <= 5);
     }
 }
+
+TEST_CASE("stacks with random velocities are solved from a cold start, and what is not is reported",
+          "[lie][cones]")
+{
+    // violent sliding of ten boxes, with equal masses and with a top box of 1e4 kg
+    int relaxed = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed)
+        for (const double top : {1., 1e4}) {
+            const tests::BodiesInContact of = tests::stack(10, top, 0.1, seed);
+            lie::ConeProblem p = of.problem();
+            ConeSolver solver(of.mass, of.rows);
+            ConeSolver::Iterate x;
+            x.p.assign(p.mu.size(), Vec3::Zero());
+            solver.start(p);
+            const ConeSolver::Outcome outcome = solver.solve(p, x, {1e-11, 1e-11});
+            INFO("seed " << seed << ", top " << top << ", residual " << outcome.residual);
+            CHECK(outcome.status != ConeSolver::Status::failed);
+            const tests::Violations violated = tests::violations(of, x.y, x.p);
+            CHECK(violated.momentum < 1e-6);
+            CHECK(violated.impulse < 1e-6);
+            if (outcome.status == ConeSolver::Status::friction_relaxed)
+                ++relaxed;
+            else
+                CHECK(std::max(violated.velocity, violated.power) < 1e-4);
+        }
+    CHECK(relaxed <= 1);
+}

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hilda::lie {
 
@@ -10,13 +11,14 @@ namespace {
 
 constexpr double first_rho = 0.1;
 constexpr int adapted_every = 20, most_adaptions = 5;  // of the penalty
-constexpr int patience = 8;      // iterations in which the residual must become half as large
-constexpr double balanced = 10;  // ratio of the residuals
+constexpr int patience = 8;                  // iterations in which the residual must become half as large
+constexpr double iterations_per_digit = 50;  // after which the tolerance has become ten times as large
+constexpr double balanced = 10;              // ratio of the residuals
 
 }  // namespace
 
-int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, double tolerance,
-                    double least, int most)
+int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, const Tolerances& to,
+                    int most, bool accelerates)
 {
     rho = first_rho;
     p = x.p;
@@ -29,22 +31,66 @@ int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, 
         w[c] = u_hat + problem.g[c] * project_on_cone(-u_hat / problem.g[c], problem.mu[c]);  // on K*
     }
     factor(problem, matrix);
+    const auto n = static_cast<Eigen::Index>(p.size());
+    z.resize(4 * n), e.resize(4 * n), plain.resize(4 * n);
+    acceleration.resize(4 * n, 4 * n);
     int adaptions = 0, halved_at = 0;
-    double halved = x.residual;
+    double halved = x.residual, last_change = std::numeric_limits<double>::infinity();
     for (int k = 1; k <= most; ++k) {
+        set_variables(problem, z);
         set_right_side(problem);
         matrix.solve(b, now.y);
         project(problem);
         now.residual = problem.residual(now);
         if (now.residual < 0.5 * halved) halved = now.residual, halved_at = k;
         if (now.residual < x.residual) x = now;
-        if (x.residual <= least || (x.residual <= tolerance && k - halved_at >= patience)) return k;
+        const double tolerance = std::min(to.last, to.first * std::pow(10, k / iterations_per_digit));
+        if (x.residual <= to.least || (x.residual <= tolerance && k - halved_at >= patience)) return k;
         if (k % adapted_every == 0 && adaptions < most_adaptions && adapt_penalty()) {
             ++adaptions;
             factor(problem, matrix);
+            acceleration.start();
+            last_change = std::numeric_limits<double>::infinity();
+            continue;
         }
+        set_variables(problem, e);  // of the iteration without acceleration
+        e -= z;
+        const double change = e.norm();
+        if (accelerates && change > last_change) {
+            acceleration.start();
+            last_change = std::numeric_limits<double>::infinity();
+            take_variables(problem, plain);
+            continue;
+        }
+        last_change = change;
+        plain = z + e;
+        if (accelerates) acceleration.accelerate(z, e);
+        z += e;
+        take_variables(problem, z);
     }
     return most;
+}
+
+/// (R_c p_c - w_c, s_c), the variables of the fixed point, all velocities
+void ConeAdmm::set_variables(const ConeProblem& problem, Eigen::VectorXd& out) const
+{
+    const auto n = static_cast<Eigen::Index>(p.size());
+    for (Eigen::Index c = 0; c < n; ++c) {
+        out.segment<3>(3 * c) = rho * problem.g[c] * p[c] - w[c];
+        out[3 * n + c] = now.offset[c];
+    }
+}
+
+void ConeAdmm::take_variables(const ConeProblem& problem, const Eigen::VectorXd& from)
+{
+    const auto n = static_cast<Eigen::Index>(p.size());
+    for (Eigen::Index c = 0; c < n; ++c) {
+        const double R = rho * problem.g[c];
+        const Vec3 a = from.segment<3>(3 * c) / R;
+        p[c] = project_on_cone(a, problem.mu[c]);
+        w[c] = R * (p[c] - a);
+        now.offset[c] = from[3 * n + c];
+    }
 }
 
 void ConeAdmm::factor(const ConeProblem& problem, BodyMatrix& matrix)

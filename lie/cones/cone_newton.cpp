@@ -54,8 +54,8 @@ Mat3 ConeNewton::weight(const ConeProblem& problem, int c, const Eigen::VectorXd
 {
     const double R = rho * problem.g[c];
     const Vec3 w = u_hat(problem, c, y);
-    const Mat3 derivative = cone_projection_derivative(centre[c] - w / R, problem.mu[c]) / R;
-    const double slip = std::hypot(w[1], w[2]);
+    Mat3 derivative = cone_projection_derivative(centre[c] - w / R, problem.mu[c]) / R;
+    const double slip = tangential(w);
     if (!coulomb || slip == 0) return derivative;
     Mat3 of_u_hat = Mat3::Identity();
     of_u_hat.row(0).tail<2>() = problem.mu[c] / slip * w.tail<2>().transpose();

@@ -34,16 +34,16 @@ void ConeProblem::set_scales()
     g.resize(cones->size());
     for (int c = 0; c < contacts(); ++c) {
         const ConeRows::Cone& cone = (*cones)[c];
-        double sum = 0;
-        const auto add = [&](int b, const ConeRows::Mat36& C) {
-            if (b < 0) return;
+        const auto of_body = [&](int b, const ConeRows::Mat36& C) {
+            double sum = 0;
+            if (b < 0) return sum;
             for (int k = 0; k < (mu[c] > 0 ? 3 : 1); ++k) {
                 const Vec6 row = C.row(k).transpose();
                 sum += row.dot(by_mass(b, row));
             }
+            return sum;
         };
-        add(cone.i, cone.C_i);
-        add(cone.j, cone.C_j);
+        const double sum = of_body(cone.i, cone.C_i) + of_body(cone.j, cone.C_j);  // the same if exchanged
         g[c] = mu[c] > 0 ? sum / 3 : sum;
     }
 }

@@ -64,7 +64,7 @@ struct ConeProblem {
         of[0] += beta[c] + slip_term(c, of);
         return of;
     }
-    double slip_term(int c, const Vec3& of_u) const { return mu[c] * std::hypot(of_u[1], of_u[2]); }
+    double slip_term(int c, const Vec3& of_u) const { return mu[c] * tangential(of_u); }
     /// |p - Π(p - w/g)| g of contact point c for the impulse p and the velocity w, at least its rounding
     /// error: without it, impulses of 10¹⁶ N s would solve problems that have no solution
     double natural_map(int c, const Vec3& p, const Vec3& w) const

@@ -10,6 +10,8 @@
 
 namespace hilda::lie {
 
+struct State;
+
 /// The contact points of a state. At each of them body i touches body j or the ground, and
 ///
 ///     u = C_i (ṙ_i, ω̄_i) + C_j (ṙ_j, ω̄_j)      velocity of i relative to j in the axes (n, t_1, t_2)
@@ -32,7 +34,14 @@ struct ConeRows {
         double mu_s = 0, mu_k = 0;  ///< coefficients of friction of a contact point that sticks, that slips
         double restitution = 0;     ///< Newton's coefficient in [0, 1]
         double size = 0;            ///< smaller size of the two bodies [m], the scale of overlaps
+
+        /// u_n for the velocities of a state [m/s]
+        double normal_velocity(const State& x) const;
     };
+
+    bool has(std::uint64_t key) const;
+    /// Adds the contact points of another list that are not in this one.
+    void add_unlisted(const ConeRows& other);
 
     std::vector<Cone> cone;  ///< in ascending order of the keys
 };

@@ -16,8 +16,9 @@ namespace {
 constexpr int most_admm = 300, most_patient_admm = 3000, most_newton = 50, most_passes = 20, depth = 5;
 // in units of rounding()
 constexpr double least_rounding = 4, most_rounding = 64;
-// parts of the acceptable residual: at which Newton's method ends, and without which the fixed point is tried
-constexpr double good = 1e-3, sufficient = 0.1;
+// parts of the acceptable residual: the aim of all methods, and the residual below which only the quick ones
+// are tried
+constexpr double good = 5e-3, sufficient = 0.1;
 
 /// Rounding error of the residual: that of the velocities which the impulses cause
 double rounding(const ConeProblem& problem, const ConeProblem::Iterate& x)
@@ -63,17 +64,19 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
 
     other.residual = std::numeric_limits<double>::infinity();
     matrix.set_contacts(problem);
-    count += admm.solve(problem, matrix, x, to.result, least_rounding * rounding(problem, x), most_admm);
-    const double tolerance = at_least(std::max(to.result, good * to.acceptable));
-    if (!(x.residual <= tolerance)) {
+    const double aim = std::max(at_least(to.result), good * to.acceptable),
+                 enough = std::max(aim, sufficient * to.acceptable);
+    count +=
+        admm.solve(problem, matrix, x, {to.result, aim, least_rounding * rounding(problem, x)}, most_admm);
+    if (!(x.residual <= aim)) {
         try {
-            solve_by_newton(problem, x, tolerance);
-            const double enough = std::max(tolerance, sufficient * to.acceptable);
-            if (!(x.residual <= enough)) {
-                count += admm.solve(problem, matrix, x, tolerance, tolerance, most_patient_admm);
-                if (!(x.residual <= enough)) solve_by_newton(problem, x, tolerance);
-            }
-            if (!(x.residual <= enough)) solve_by_fixed_point(problem, x, tolerance);
+            solve_by_newton(problem, x, aim);
+            // An accelerated iteration can cycle where the plain one converges slowly.
+            for (const bool accelerates : {false, true})
+                if (!(x.residual <= enough))
+                    count += admm.solve(problem, matrix, x, {aim, aim, aim}, most_patient_admm, accelerates);
+            if (!(x.residual <= enough)) solve_from_interior_point(problem, x, aim);
+            if (!(x.residual <= enough)) solve_by_fixed_point(problem, x, aim);
         } catch (const NumericalFailure&) {
             // a matrix that is not finite; the best iterate remains
         }
@@ -103,14 +106,17 @@ void ConeSolver::keep_better(const ConeProblem& problem, Iterate& x)
     x.residual = residual;
 }
 
-/// From the result of ADMM, which has the active contacts mostly, then from the interior point
+/// From the result of ADMM, which has the active contacts mostly
 void ConeSolver::solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance)
 {
     other = x;
     count += newton.solve(problem, matrix, other, tolerance,
                           {.rho = 1e-3, .most_outer = 3, .most_inner = 4, .coulomb = true, .reduction = 0.1});
     keep_better(problem, x);
-    if (x.residual <= tolerance) return;
+}
+
+void ConeSolver::solve_from_interior_point(const ConeProblem& problem, Iterate& x, double tolerance)
+{
     other = x;
     for (int c = 0; c < problem.contacts(); ++c) other.offset[c] = problem.beta[c];
     count += interior_point.solve(problem, matrix, other, 1e-7);

@@ -3,17 +3,18 @@
 ///
 /// 1. Start: the given impulses, e.g. those of the last step, with the velocities that they cause. Contacts
 ///    at rest or in steady sliding need no more than this.
-/// 2. ADMM, up to 300 iterations.
-/// 3. Proximal Newton method for Coulomb's law from the result of 2, and from that of the interior point
-///    method for the convex problem without slip terms. If this does not suffice, ADMM with up to 3000
-///    iterations, and Newton's method again.
-/// 4. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
+/// 2. ADMM with Anderson acceleration, up to 300 iterations.
+/// 3. A few steps of the proximal Newton method for Coulomb's law from the result of 2.
+/// 4. ADMM with up to 3000 iterations, then again with acceleration.
+/// 5. Newton's method from the solution of the convex problem without slip terms, by the interior point
+///    method.
+/// 6. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
 ///    depth 5.
 ///
-/// The result is the iterate with the smallest residual. Steps 3 and 4 end at 10⁻³ of the acceptable
-/// residual, if the tolerance is smaller, and step 4 is left out below 10⁻¹ of it. A result above the
-/// acceptable residual is an error, unless the convex problem with the last slip terms is solved: the result
-/// then satisfies the law with a slip term that differs from μ |u_t| (friction_relaxed).
+/// The result is the iterate with the smallest residual. The methods end at 5·10⁻³ of the acceptable
+/// residual, and those from 4 on are left out below 10⁻¹ of it. A result above the acceptable residual is an
+/// error, unless the convex problem with the last slip terms is solved: the result then satisfies the law
+/// with a slip term that differs from μ |u_t| (friction_relaxed).
 
 #pragma once
 
@@ -61,6 +62,7 @@ public:
 
 private:
     void solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance);
+    void solve_from_interior_point(const ConeProblem& problem, Iterate& x, double tolerance);
     void solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance);
     void solve_relaxed(const ConeProblem& problem, const Iterate& x);
     void keep_better(const ConeProblem& problem, Iterate& x);

@@ -22,6 +22,19 @@ class System;
 ///
 /// An overlap g < 0 does not enter β: g/h would throw the bodies apart. The contact closes within the step if
 /// u_n + g/h < 0 for the velocities of a step without contacts.
+///
+/// Contact points are listed if the velocities at t_n can close them within the step. Those that only the
+/// impulses of the step close are found at its end, by their overlap, and the step is solved again with them
+/// (add_missed). An impact with e > 0 that another impact causes takes place in the next step instead: its
+/// approaching velocity is that after the first one.
+///
+/// Newton's law with friction or with different coefficients can increase the energy (Stronge, 1990). The
+/// coefficients of the step are then reduced by a common factor s, the largest one by which the impulses do
+/// no work:
+///
+///     Σ p_c · (u_c⁻ + u_c⁺)/2 ≤ 0,     u⁻ without contacts,     e → s e,  0 ≤ s ≤ 1
+///
+/// With s = 0 their work is not positive.
 class ContactStep {
 public:
     /// `tolerance`: of the contact law [m/s]. `scheme`: its name, for messages
@@ -31,6 +44,11 @@ public:
     /// unchanged until set_forces(). Returns whether there are contact points.
     bool find(const State& x, double h);
     bool empty() const { return contacts.cone.empty(); }
+    /// If a contact point without restitution that was not listed overlaps in `at_end`, those of the end x of
+    /// the step: lists the contact points again with the larger ones of the velocities of x_n and of x. Those
+    /// that are still not listed, such as other parts of the bodies, are added with their rows of the end and
+    /// the gap g - h u_n. Returns whether the step must be solved again, at most ten times.
+    bool add_missed(const State& x, const ConeRows& at_end);
     /// The joint rows at t_n, if there are contact points
     const Rows& rows() const { return C; }
 
@@ -50,6 +68,9 @@ public:
 private:
     void start();
     void set_rebounds();
+    ConeSolver::Outcome solve_with_rebounds(double of_start);
+    double work();
+    void set_restitution(double factor);
     bool is_steady();
     double rounding_of_gap(const ConeRows::Cone& cone) const;
     [[noreturn]] void fail(const ConeSolver::Outcome& outcome) const;
@@ -59,17 +80,23 @@ private:
     const std::string scheme;
     Rows C;
     ConeRows contacts;
+    ConeRows missed;            ///< those of the ends of the solutions before of this step
+    int rounds = 0;             ///< number of these solutions
     std::vector<char> slipped;  ///< whether each contact point slipped in the last step
     ConeProblem problem;
     ConeSolver solver;
     ConeSolver::Iterate iterate, without_contacts;
     Eigen::VectorXd y_n;
+    std::vector<double> rebound;  ///< e u_n(v_n) of the contact points that close with e > 0, else 0 [m/s]
+    bool rebounds = false;        ///< whether there are any
+    bool is_reduced = false;      ///< whether their coefficients were reduced
+    State reaching;               ///< x_n with the velocities of add_missed()
     const State* x_n = nullptr;
     double h = 0;
     double start_tolerance = 0;
     double residual = 0, worst_residual = 0;
     bool is_relaxed = false;  ///< whether the last solution has the status friction_relaxed
-    long relaxed_steps = 0;
+    long relaxed_steps = 0, reduced_steps = 0;
 };
 
 }  // namespace hilda::lie

@@ -11,10 +11,13 @@
 
 namespace hilda::lie {
 
+/// |x_t|, several times faster than std::hypot, which avoids overflow and underflow
+inline double tangential(const Vec3& x) { return std::sqrt(x[1] * x[1] + x[2] * x[2]); }
+
 /// The point of K_μ nearest to x
 inline Vec3 project_on_cone(const Vec3& x, double mu)
 {
-    const double n = x[0], t = std::hypot(x[1], x[2]);
+    const double n = x[0], t = tangential(x);
     if (mu * t <= -n) return Vec3::Zero();
     if (t <= mu * n) return x;
     const double s = (n + mu * t) / (1 + mu * mu), by_t = mu * s / t;
@@ -24,7 +27,7 @@ inline Vec3 project_on_cone(const Vec3& x, double mu)
 /// A generalised derivative of the projection at x, symmetric, with eigenvalues in [0, 1]
 inline Mat3 cone_projection_derivative(const Vec3& x, double mu)
 {
-    const double n = x[0], t = std::hypot(x[1], x[2]);
+    const double n = x[0], t = tangential(x);
     if (mu * t <= -n) return Mat3::Zero();
     if (mu == 0) return Vec3(1, 0, 0).asDiagonal();
     if (t <= mu * n) return Mat3::Identity();

@@ -9,9 +9,8 @@ namespace hilda::lie {
 
 namespace {
 
-constexpr double allowed = 1e-9;       // overlap, relative to Cone::size
 constexpr double of_tolerance = 1e-3;  // accuracy of a correction, relative to the allowed overlap
-constexpr int most_corrections = 5;
+constexpr int most_corrections = 10;
 
 }  // namespace
 
@@ -20,11 +19,20 @@ OverlapCorrection::OverlapCorrection(const System& system, double tolerance)
       of_positions(system.mass(), C)
 {}
 
+const ConeRows& OverlapCorrection::find(const State& x)
+{
+    system.cones(x, 0, contacts);
+    is_found = true;
+    return contacts;
+}
+
 bool OverlapCorrection::correct(State& x, double h)
 {
     problem.C_b = &C;
+    before.cone.clear();
     for (int n = 0;; ++n) {
-        system.cones(x, 0, contacts);
+        if (!is_found) find(x);
+        is_found = false;
         double largest = 0, size = 1;
         for (const ConeRows::Cone& cone : contacts.cone) largest = std::max(largest, -cone.gap / cone.size);
         const bool overlap_remains = largest > allowed;
@@ -35,7 +43,10 @@ bool OverlapCorrection::correct(State& x, double h)
         system.phi(x, problem.nu);
         const bool open_joint = problem.nu.size() > 0 && problem.nu.lpNorm<Eigen::Infinity>() > tolerance;
         if (!overlap_remains && !open_joint) return true;
+        overlapping.cone = contacts.cone;
         system.cones(x, h, contacts);
+        contacts.add_unlisted(overlapping);
+        contacts.add_unlisted(before);
         for (const ConeRows::Cone& cone : contacts.cone) size = std::min(size, cone.size);
         system.variation(x, C);
         problem.nu *= -1;
@@ -51,6 +62,8 @@ bool OverlapCorrection::correct(State& x, double h)
                 .status != ConeSolver::Status::solved)
             return false;
         move(x);
+        before.cone = contacts.cone;
+        for (int c = 0; c < problem.contacts(); ++c) before.cone[c].gap += problem.u(c, iterate.y)[0];
     }
 }
 

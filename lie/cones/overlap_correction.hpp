@@ -21,9 +21,14 @@ public:
     /// `tolerance`: of Φ after a correction [m or rad]
     OverlapCorrection(const System& system, double tolerance);
 
+    static constexpr double allowed = 1e-9;  ///< overlap, relative to Cone::size
+
+    /// The contact points of x that touch or overlap. A call of correct() for the same x takes them.
+    const ConeRows& find(const State& x);
     /// Corrects the poses of x until no overlap exceeds 10⁻⁹ of Cone::size and the joints are closed, at most
-    /// five times. The gaps of the contact points in reach of a step h remain positive. Returns false if a
-    /// correction was not found; the poses are then those before it.
+    /// ten times. The gaps of the contact points in reach of a step h, and of those of the corrections
+    /// before, remain positive. Returns false if a correction was not found; the poses are then those before
+    /// it.
     bool correct(State& x, double h);
 
     /// Largest overlap after a correction, relative to Cone::size
@@ -37,9 +42,12 @@ private:
     const double tolerance;
     Rows C;
     ConeRows contacts;
+    ConeRows overlapping;  ///< contact points that overlap
+    ConeRows before;       ///< those of the last correction, with the gaps after it
     ConeProblem problem;
     ConeSolver of_positions;
     ConeSolver::Iterate iterate;
+    bool is_found = false;  ///< contacts are those of find()
     double remaining_overlap = 0;
 };
 

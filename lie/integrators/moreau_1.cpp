@@ -50,21 +50,14 @@ public:
     {
         x_n = x;
         Attempt attempt(x, x_n);
-        if (!contacts.find(x_n, h)) {
-            K.set_shift(shift(h));
-            K.assemble(x_n);
-        }
+        contacts.find(x_n, h);
         set_known_part(h);
-        predict(h, h * h, h * h);
         x.t = x_n.t + h;
-        place_increments(x);
-        set_right_side(x, h);
-        for (int k = 1; k <= most_iterations; ++k) {
-            if (!(contacts.empty() ? correct(k, x, h) : solve_contacts(k, x, h))) continue;
-            accept(x, h);
-            return done(attempt, k);
-        }
-        no_convergence(name, correction, x);
+        int iterations = 0;
+        do iterations += solve(x, h);
+        while (misses_contacts(x));
+        accept(x, h);
+        return done(attempt, iterations);
     }
 
     Statistics statistics() const override
@@ -87,6 +80,34 @@ private:
             b.segment<3>(6 * i) = h * mass.m[i] * body.rdot + h * h * loads.F[i];
             b.segment<3>(6 * i + 3) = h * h * loads.n_bar[i] - momentum(i, -h * body.omega_bar);
         }
+    }
+
+    /// The solution z with the contact points found, and its poses and velocities in x. Returns the number of
+    /// iterations.
+    int solve(State& x, double h)
+    {
+        if (contacts.empty()) {
+            K.set_shift(shift(h));
+            K.assemble(x_n);
+        }
+        predict(h, h * h, h * h);
+        place_increments(x);
+        set_right_side(x, h);
+        for (int k = 1; k <= most_iterations; ++k) {
+            if (!(contacts.empty() ? correct(k, x, h) : solve_contacts(k, x, h))) continue;
+            place_increments(x);
+            for (int i = 0; i < bodies; ++i) {
+                x.body[i].rdot = z.segment<3>(6 * i) / h;
+                x.body[i].omega_bar = z.segment<3>(6 * i + 3) / h;
+            }
+            return k;
+        }
+        no_convergence(name, correction, x);
+    }
+
+    bool misses_contacts(const State& x)
+    {
+        return model.has_cones() && contacts.add_missed(x, overlaps.find(x));
     }
 
     /// The right side of M z_b + C_bᵀ z_λ - h Σ Cᵀ p = …, C_b z_b = … at the iterate
@@ -140,12 +161,9 @@ private:
 
     void accept(State& x, double h)
     {
-        place_increments(x);
         for (int i = 0; i < bodies; ++i) {
             Motion& body = x.body[i];
             const Motion& before = x_n.body[i];
-            body.rdot = z.segment<3>(6 * i) / h;
-            body.omega_bar = z.segment<3>(6 * i + 3) / h;
             body.rddot = (body.rdot - before.rdot) / h;
             body.omegadot_bar = (body.omega_bar - before.omega_bar) / h;
             body.A = orthonormalised(body.A);

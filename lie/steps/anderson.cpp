@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hilda::lie {
 
@@ -12,13 +13,25 @@ Anderson::Anderson(Eigen::Index unknowns, Eigen::Index measured)
       e_before(unknowns)
 {}
 
+void Anderson::resize(Eigen::Index unknowns, Eigen::Index of_norm)
+{
+    measured = of_norm;
+    change_z.resize(unknowns, most), change_e.resize(unknowns, most);
+    z_before.resize(unknowns), e_before.resize(unknowns);
+    start();
+}
+
 void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
 {
     if (has_before) {
         change_z.col(next) = z - z_before;
         change_e.col(next) = e - e_before;
+        const int stored = std::min(count + 1, most);
+        for (int i = 0; i < stored; ++i)
+            products(i, next) = products(next, i) =
+                change_e.col(i).head(measured).dot(change_e.col(next).head(measured));
         next = (next + 1) % most;
-        count = std::min(count + 1, most);
+        count = stored;
     }
     z_before = z, e_before = e, has_before = true;
     if (count == 0) return;
@@ -28,14 +41,12 @@ void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
     SmallVector length(count), right(count);
     Small product(count, count);
     for (int i = 0; i < count; ++i) {
-        length[i] = change_e.col(i).head(measured).norm();
+        length[i] = std::sqrt(products(i, i));
         if (!(length[i] > 0)) return;
     }
     for (int i = 0; i < count; ++i) {
         right[i] = change_e.col(i).head(measured).dot(e.head(measured)) / length[i];
-        for (int j = 0; j < count; ++j)
-            product(i, j) =
-                change_e.col(i).head(measured).dot(change_e.col(j).head(measured)) / (length[i] * length[j]);
+        for (int j = 0; j < count; ++j) product(i, j) = products(i, j) / (length[i] * length[j]);
     }
     const SmallVector gamma = product.colPivHouseholderQr().solve(right);
     if (!gamma.allFinite()) return;

@@ -19,6 +19,8 @@ public:
     /// `unknowns`: size of z; `measured`: how many of them, from the first one on, are in the norm |.|
     Anderson(Eigen::Index unknowns, Eigen::Index measured);
 
+    /// Sets the sizes.
+    void resize(Eigen::Index unknowns, Eigen::Index measured);
     /// Forgets the earlier corrections.
     void start() { count = next = 0, has_before = false; }
     /// Replaces the correction e of the iterate z by the accelerated one.
@@ -27,8 +29,9 @@ public:
 private:
     static constexpr int most = 8;
 
-    const Eigen::Index measured;
+    Eigen::Index measured;
     Eigen::MatrixXd change_z, change_e;
+    Eigen::Matrix<double, most, most> products;  ///< scalar products of the columns of ΔE
     Eigen::VectorXd z_before, e_before;
     int count = 0, next = 0;
     bool has_before = false;

@@ -5,6 +5,7 @@
 #include "lie/schemes.hpp"
 #include "lie/settings.hpp"
 #include "tests/lie/cones/contact_system.hpp"
+#include "tests/support/random_motion.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -75,4 +76,69 @@ TEST_CASE("the impulses of the last step are the initial guess in rotated axes",
     second->step(x, 1e-3);
     CHECK(second->statistics().cone_factorizations == 0);
     for (size_t c = 0; c < 4; ++c) CHECK((x.cone_forces.at(c).F - saved.cone_forces.at(c).F).norm() < 1e-9);
+}
+
+TEST_CASE("a contact that only the impulses of the step close is found", "[lie][cones]")
+{
+    // Three balls in a row; the first one strikes the second, which reaches the third within the step.
+    // Without restitution the gaps close at the end of the step: v_i - v_j = gap/h.
+    for (const double restitution : {0., 0.5}) {
+        tests::ContactSystem system;
+        system.gravity.setZero();
+        const double R = 0.1, gap_01 = 1e-4, gap_12 = 2.5e-4, h = 1e-3;
+        system.add_sphere(1, R, {0, 0, 0});
+        system.add_sphere(1, R, {2 * R + gap_01, 0, 0});
+        system.add_sphere(1, R, {4 * R + gap_01 + gap_12, 0, 0});
+        system.spheres.push_back({0, 1, R, R, 0, restitution});
+        system.spheres.push_back({1, 2, R, R, 0, restitution});
+        lie::State x = system.start();
+        x.body[0].rdot.x() = 1;
+        lie::ConeRows found;
+        system.cones(x, h, found);
+        REQUIRE(found.cone.size() == 1);
+        const auto integrator = lie::scheme("rA-moreau-1").make(system, {});
+        integrator->step(x, h);
+        if (restitution == 0) {
+            const double v_0 = (1 + 2 * gap_01 / h + gap_12 / h) / 3;
+            CHECK(x.body[0].rdot.x() == Approx(v_0).epsilon(1e-9));
+            CHECK(x.body[1].rdot.x() == Approx(v_0 - gap_01 / h).epsilon(1e-9));
+            CHECK(x.body[2].rdot.x() == Approx(v_0 - gap_01 / h - gap_12 / h).epsilon(1e-9));
+        } else {  // the second impact takes place in the next step
+            CHECK(x.body[1].rdot.x() == Approx(0.75));
+            CHECK(x.body[2].rdot.x() == 0);
+            integrator->step(x, h);
+            CHECK(x.body[1].rdot.x() == Approx(0.1875));
+            CHECK(x.body[2].rdot.x() == Approx(0.5625));
+        }
+        for (int k = 0; k < 2; ++k) CHECK(x.body[k + 1].r.x() - x.body[k].r.x() > 2 * R - 1e-9 * system.size);
+    }
+}
+
+TEST_CASE("an impact with friction does not increase the energy", "[lie][cones]")
+{
+    // A box that strikes the ground with a corner, without gravity. Newton's law alone increases the energy
+    // in some of these impacts.
+    tests::Random random(11);
+    long reduced = 0;
+    for (int n = 0; n < 300; ++n) {
+        CAPTURE(n);
+        tests::ContactSystem system;
+        system.gravity.setZero();
+        const Vec3 half(0.1, 0.04, 0.3);
+        const lie::Mat3 A = lie::exp(3 * random.vector());
+        const Vec3 corner = A.transpose() * Vec3(0, 0, -0.2);
+        system.add_box(1, half, {0, 0, 0.2 + 1e-12}, A);
+        system.vertices.push_back({0, -1, corner + 0.1 * random.vector(), Vec3::UnitZ(), 0, 1, 0.9});
+        lie::State x = system.start();
+        x.body[0].r.z() -= tests::ContactSystem::point(x, 0, system.vertices[0].s_bar).z() - 1e-9;
+        x.body[0].rdot = random.vector(), x.body[0].omega_bar = 5 * random.vector();
+        const double before = system.kinetic_energy(x);
+        const auto integrator = lie::scheme("rA-moreau-1").make(system, {});
+        integrator->step(x, 1e-5);
+        CHECK(system.kinetic_energy(x) <= before * (1 + 1e-6));
+        reduced += integrator->statistics().restitution_reduced;
+        if (integrator->statistics().restitution_reduced > 0)  // no more than necessary
+            CHECK(system.kinetic_energy(x) >= before * (1 - 2e-2));
+    }
+    CHECK(reduced >= 3);
 }

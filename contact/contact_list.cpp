@@ -51,6 +51,7 @@ void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::se
                                   .shared = shared,
                                   .group = as_group ? &all : nullptr,
                                   .group_name = entry_name};
+        const std::size_t groups_before = model.near_forces().all_groups().size();
         bool has_group = false;
         o.located([&] {
             try {
@@ -65,7 +66,8 @@ void read_contact(dae::ObjectReader& entry, const dae::PartialModel& to, std::se
         if (as_group && !has_group) return false;
         to.out.force_place.resize(model.forces().size(), o.place());
         to.out.general_place.resize(model.general_constraints().size(), o.place());
-        if (as_group) model.near_forces().all_groups().back()->place = o.place();
+        const auto& groups = model.near_forces().all_groups();
+        if (groups.size() > groups_before) groups.back()->place = o.place();
         recorded.push_back(o.finish());
         return true;
     };

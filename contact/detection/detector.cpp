@@ -4,13 +4,24 @@
 #include "contact/detection/detectors.hpp"
 #include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/plane.hpp"
+#include "contact/surfaces/polytope.hpp"
+#include "contact/surfaces/sphere.hpp"
 #include "lie/check.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace hilda::contact {
 
 namespace {
+
+void exchange(ContactPoint& p)
+{
+    std::swap(p.C_i, p.C_j);
+    std::swap(p.K_i, p.K_j);
+    std::swap(p.edge_i, p.edge_j);
+    p.n = -p.n;
+}
 
 /// The detector of the pair (j, i), used for (i, j)
 class ExchangedDetector final : public Detector {
@@ -20,6 +31,14 @@ public:
     ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints* from) const override
     {
         return detect_exchanged(*ji, bi, bj, from);
+    }
+    void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
+                    Manifold& out) const override
+    {
+        const PreviousPoints exchanged =
+            from != nullptr ? PreviousPoints{from->c_j, from->c_i} : PreviousPoints{};
+        ji->detect_all(bj, bi, reach, from != nullptr ? &exchanged : nullptr, out);
+        for (ManifoldPoint& p : out) exchange(p.at);
     }
     bool is_cheap() const override { return ji->is_cheap(); }
 
@@ -40,6 +59,12 @@ void check_shape(const Shape& shape)
         lie::reject(where, "the orientation of a surface must be a rotation", "a reflection");
 }
 
+/// Whether the surface is a polytope or a ball
+bool has_core(const Shape& s)
+{
+    return surface_as<Polytope>(s) != nullptr || (surface_as<Sphere>(s) != nullptr && s.surface->sigma() > 0);
+}
+
 std::string names(const Shape& i, const Shape& j)
 {
     const auto named = [](const Shape& s) {
@@ -55,7 +80,13 @@ void check_pair(const Shape& i, const Shape& j)
     for (const auto& [a, b] : {std::pair{&i, &j}, std::pair{&j, &i}}) {
         const bool a_is_plane = surface_as<Plane>(*a) != nullptr,
                    b_is_plane = surface_as<Plane>(*b) != nullptr;
-        if (!a->surface->is_smooth() && !b_is_plane)
+        const bool is_polytope = surface_as<Polytope>(*a) != nullptr;
+        if (is_polytope && !b_is_plane && !has_core(*b))
+            lie::reject(where,
+                        "a " + a->surface->name() +
+                            " can be paired with a plane, sphere, box, capsule, polygon or convex",
+                        names(i, j));
+        if (!a->surface->is_smooth() && !is_polytope && !b_is_plane)
             lie::reject(where, "a " + a->surface->name() + " can be paired with a plane only", names(i, j));
         if (a_is_plane && (b_is_plane || surface_as<Cylinder>(*b) != nullptr))
             lie::reject(where, "a pair of surfaces must have a single contact point", names(i, j));
@@ -72,19 +103,30 @@ ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion
     const PreviousPoints exchanged =
         from != nullptr ? PreviousPoints{from->c_j, from->c_i} : PreviousPoints{};
     ContactPoint contact_point = ji.detect(bj, bi, from != nullptr ? &exchanged : nullptr);
-    std::swap(contact_point.C_i, contact_point.C_j);
-    std::swap(contact_point.K_i, contact_point.K_j);
-    std::swap(contact_point.edge_i, contact_point.edge_j);
-    contact_point.n = -contact_point.n;
+    exchange(contact_point);
     return contact_point;
+}
+
+void Manifold::sort()
+{
+    std::sort(begin(), end(),
+              [](const ManifoldPoint& a, const ManifoldPoint& b) { return a.feature < b.feature; });
+}
+
+void Detector::detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
+                          Manifold& out) const
+{
+    out.clear();
+    const ContactPoint at = detect(bi, bj, from);
+    if (at.gap < reach) out.push_back({.at = at, .feature = 0});
 }
 
 std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j)
 {
     check_shape(i), check_shape(j);
     check_pair(i, j);
-    for (const auto make : {sphere_plane, sphere_sphere, foot_plane, disk_plane, cylinder_cylinder,
-                            support_plane, common_normal}) {
+    for (const auto make : {polytope_plane, polytope_polytope, sphere_plane, sphere_sphere, foot_plane,
+                            disk_plane, cylinder_cylinder, support_plane, common_normal}) {
         if (auto detector = make(i, j)) return detector;
         if (auto detector = make(j, i)) return std::make_unique<ExchangedDetector>(std::move(detector));
     }

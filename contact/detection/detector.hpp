@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/contact_point.hpp"
+#include "contact/detection/manifold.hpp"
 #include "contact/shape.hpp"
 #include "lie/state.hpp"
 
@@ -39,14 +40,20 @@ public:
     /// message states the reason. The caller adds the name of the contact.
     virtual ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints* from) const = 0;
 
+    /// Sets `out` to the contact points with a gap below `reach` [m]: several of two bodies with edges, the
+    /// one of detect() of others. If the bodies are exchanged, the points are the same bit by bit, with the
+    /// opposite normals. Throws as detect().
+    virtual void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
+                            Manifold& out) const;
+
     /// Whether detect() takes less time than to store a contact point in the state, and does not use `from`
     virtual bool is_cheap() const { return false; }
 };
 
 /// The detector for a pair of surfaces: a closed form if there is one, otherwise Newton's method on the
-/// common normal (CommonNormal). Throws lie::InvalidInput for a pair that has no single contact point in any
-/// pose, such as two planes, for a pair without a detector, such as a disk and a sphere, and for a shape
-/// without a surface or with an invalid pose.
+/// common normal (CommonNormal). A ball counts as a polytope beside one. Throws lie::InvalidInput for a pair
+/// that has no single contact point in any pose, such as two planes, for a pair without a detector, such as
+/// a disk and a sphere, and for a shape without a surface or with an invalid pose.
 std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j);
 
 }  // namespace hilda::contact

@@ -31,6 +31,10 @@ ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion
 // Each function returns a detector for the surfaces in its name, in this order, and nullptr for other
 // surfaces.
 
+/// A polytope and a plane. detect() returns the deepest vertex.
+std::unique_ptr<Detector> polytope_plane(const Shape& i, const Shape& j);
+/// Two polytopes, or a polytope and a ball. detect() returns the deepest point.
+std::unique_ptr<Detector> polytope_polytope(const Shape& i, const Shape& j);
 std::unique_ptr<Detector> sphere_plane(const Shape& i, const Shape& j);
 /// Two spheres, of which one may be concave. InvalidInput unless the sphere is smaller than the concave one.
 std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Clipping of a face of a polytope by the sides of a face of another one.  Sutherland, Hodgman (1974)
+
+#pragma once
+
+#include "contact/detection/separating_axis.hpp"
+
+#include <cstdint>
+
+namespace hilda::contact {
+
+/// The parts of two bodies that make a contact point: a vertex of one of them, or an edge of each. Numbers of
+/// edges have the bit of_edge.
+struct TouchingParts {
+    static constexpr std::uint32_t any = 0xffff, of_edge = 0x4000;
+
+    std::uint32_t a = any, b = any;
+
+    static TouchingParts edges(int a, int b)
+    {
+        return {of_edge | static_cast<std::uint32_t>(a), of_edge | static_cast<std::uint32_t>(b)};
+    }
+    TouchingParts exchanged() const { return {b, a}; }
+};
+
+/// The part of a face, edge or vertex of a body within the prism of a face of another body
+class ClippedFace {
+public:
+    struct Corner {
+        Vec3 x;           ///< in the frame of both PlacedCores
+        int side;         ///< the side that begins here: an edge of the incident body, or first_side + number
+        int vertex;       ///< of the incident body, -1 if it is none
+        int side_before;  ///< the side that ends here
+    };
+    std::vector<Corner> corner;
+
+    /// Clips the face of `incident` that is most opposite to the face f of `reference`; all vertices of a
+    /// body without faces. n is the normal of f. Corners within `length` [m] of a side count as inside.
+    void set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident, double length);
+    /// Removes the corners with height n · (x - p) >= reach over the point p. Of more than `most` the lowest
+    /// one remains and those that are farthest in most - 1 directions.
+    void keep(const Vec3& n, const Vec3& p, double reach, int most);
+    /// The parts of a corner; a is the reference body
+    TouchingParts parts(const Corner& c, const Polytope::Face& reference) const;
+
+private:
+    static constexpr int first_side = 1 << 16;
+
+    void clip(const Vec3& outward, double limit, int side, double length);
+
+    std::vector<Corner> other;
+};
+
+}  // namespace hilda::contact

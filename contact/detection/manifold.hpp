@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The contact points of a pair of bodies that touch at several places.
+
+#pragma once
+
+#include "contact/contact_point.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace hilda::contact {
+
+/// One of the contact points of a pair
+struct ManifoldPoint {
+    ContactPoint at;
+    /// The parts of the bodies that touch, such as the number of a vertex. The same parts have the same
+    /// number in all poses. Ascending in a manifold
+    std::uint32_t feature = 0;
+};
+
+/// Up to eight contact points
+class Manifold {
+public:
+    static constexpr int most = 8;
+
+    void clear() { count = 0; }
+    bool empty() const { return count == 0; }
+    int size() const { return count; }
+    const ManifoldPoint& operator[](int k) const { return point[static_cast<std::size_t>(k)]; }
+    ManifoldPoint* begin() { return point.data(); }
+    ManifoldPoint* end() { return point.data() + count; }
+    const ManifoldPoint* begin() const { return point.data(); }
+    const ManifoldPoint* end() const { return point.data() + count; }
+    void push_back(const ManifoldPoint& p) { point[static_cast<std::size_t>(count++)] = p; }
+    void sort();  ///< by features
+
+private:
+    std::array<ManifoldPoint, most> point;
+    int count = 0;
+};
+
+}  // namespace hilda::contact

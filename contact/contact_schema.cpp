@@ -115,9 +115,9 @@ void add_contacts(io::Json& definitions)
          .description =
              "Law of the normal force N. hertz and hooke are compliant laws in the overlap delta of the "
              "surfaces. given prescribes N. constraint replaces the force law by constraint rows; N is "
-             "then a Lagrange multiplier.",
+             "then a Lagrange multiplier. dvi is rigid contact with several contact points.",
          .key = {{"description", "Type of the normal law."}, {"examples", io::Json::List{"hertz"}}},
-         .others = {"constraint"}});
+         .others = {"constraint", "dvi"}});
     add_group<FrictionLaw>(
         definitions, {.name = "friction",
                       .kind = friction_kind,
@@ -128,7 +128,7 @@ void add_contacts(io::Json& definitions)
                               {"type", "string"},
                               {"default", "slide-roll-spin"},
                               {"examples", io::Json::List{"slide-roll-spin", "rolling"}}},
-                      .others = {"rolling", "implicit"},
+                      .others = {"rolling", "implicit", "coulomb"},
                       .fallback = "slide-roll-spin",
                       .unregistered = "friction_parameters"});
     add_fallback(definitions);

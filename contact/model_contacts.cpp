@@ -21,7 +21,9 @@
 #include "contact/contact_list.hpp"
 #include "contact/contact_types.hpp"
 #include "contact/evolving/friction.hpp"
+#include "contact/rigid/rigid_contacts.hpp"
 #include "contact/surface_types.hpp"
+#include "contact/surfaces/polytope.hpp"
 #include "dae/model.hpp"
 #include "dae/model_schema.hpp"
 #include "dae/model_types.hpp"
@@ -36,7 +38,8 @@ using dae::ObjectReader;
 
 const io::About about_friction = {"Friction law. Without it the contact is frictionless.",
                                   R"({"mu_s": 0.5, "mu_k": 0.4, "K_E": 10000})"};
-constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin";
+constexpr const char *rolling = "rolling", *implicit = "implicit", *slide_roll_spin = "slide-roll-spin",
+                     *coulomb = "coulomb";
 
 const io::TypeSchema rolling_schema = {
     .description =
@@ -49,6 +52,18 @@ const io::TypeSchema implicit_schema = {
         "Springs and dampers of sliding and rolling that are solved together with the step, so that no "
         "stiffness limits the step size. It requires the normal law constraint without a fallback.",
     .examples = {}};
+
+const io::TypeSchema coulomb_schema = {
+    .description = "Coulomb's law of dry friction, without a spring. It requires the normal law dvi.",
+    .examples = {R"("mu_s": 0.5, "mu_k": 0.4)"}};
+
+const io::TypeSchema rigid_schema = {
+    .description =
+        "Rigid bodies: there is no overlap and no stiffness, and a pair may have several contact points, as "
+        "a box on a floor. Contact and friction are complementarity conditions that are solved in each step "
+        "(differential variational inequality); impacts follow Newton's law. The friction law is coulomb. "
+        "The command hilda integrators lists the integrators that support it.",
+    .examples = {R"("restitution": 0.5)"}};
 
 const io::TypeSchema constraint_schema = {
     .description =
@@ -389,6 +404,50 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const ContactPair& pair,
     pair.model.load(std::move(force));
 }
 
+/// Reads a rigid contact and adds it, for one pair or for all pairs of a large group.
+bool add_rigid(ObjectReader& o, ObjectReader normal, const ContactPair& pair, const Shape& i, const Shape& j)
+{
+    io::defines_type(normal, normal_kind, "dvi", "dvi", rigid_schema);
+    RigidContactLaw law;
+    law.restitution = normal.fraction("restitution",
+                                      {"Newton's coefficient of restitution e [-]: the velocity of "
+                                       "separation of a contact point is e times "
+                                       "the velocity of approach.",
+                                       "0.5"},
+                                      0);
+    o.record("normal", normal.finish());
+    if (o.has("friction")) {
+        ObjectReader friction = o.object("friction", about_friction, "friction");
+        friction.one_of("law", {coulomb});
+        io::defines_type(friction, friction_kind, coulomb, coulomb, coulomb_schema);
+        read_coefficients(friction, law.mu_s, law.mu_k);
+        o.record("friction", friction.finish());
+    }
+    ContactPairs pairs;
+    if (pair.group != nullptr) {
+        pairs = *pair.group;
+    } else {
+        pairs.first = {pair.i}, pairs.second = {pair.j};
+        pairs.index();
+    }
+    auto contacts = std::make_unique<RigidContacts>(pair.group != nullptr ? pair.group_name : pair.name,
+                                                    pair.model, std::move(pairs), i, j, law);
+    contacts->place = o.place();
+    pair.model.contact(std::move(contacts));
+    return pair.group != nullptr;
+}
+
+/// Refuses surfaces that touch at several points for laws with one contact point.
+void check_single_point(const ObjectReader& o, std::string_view key, const Shape& shape,
+                        const std::string& type)
+{
+    if (dynamic_cast<const Polytope*>(shape.surface.get()) != nullptr)
+        o.fail(key, "a " + shape.surface->name() +
+                        " touches at several points, which need \"normal\": {\"type\": "
+                        "\"dvi\"}; got " +
+                        type);
+}
+
 /// The surfaces of a contact. All pairs of a group share them, so that a mesh is read once.
 struct Surfaces {
     Shape i, j;
@@ -428,8 +487,11 @@ bool read_contact(ObjectReader& o, const ContactPair& pair)
                                     R"({"type": "hertz", "E_star": 1e7, "restitution": 0.5})"},
                                    "normal");
     std::vector<std::string> types = normal_laws(false);
-    types.emplace_back("constraint");
+    types.insert(types.end(), {"constraint", "dvi"});
     const std::string type = normal.one_of("type", types);
+    if (type == "dvi") return add_rigid(o, std::move(normal), pair, i, j);
+    check_single_point(o, pair.surface_i, i, type);
+    check_single_point(o, pair.surface_j, j, type);
     if (type == "constraint") {
         if (pair.group == nullptr) add_evolving(o, std::move(normal), pair, i, j);
         return false;
@@ -470,7 +532,11 @@ const bool registered_contact_schema = io::Registry<dae::SchemaPart>::add(
               R"("surface_j": {"type": "ellipsoid", "semi_axes": [2.5, 3, 2], "concave": true}, )"
               R"("normal": {"type": "constraint"}, "friction": {"law": "rolling"}}, )"
               R"({"name": "balls", "bodies": "all", "surface": {"type": "sphere", "radius": 0.1}, )"
-              R"("normal": {"type": "hooke", "stiffness": 1e5}}]})",
+              R"("normal": {"type": "hooke", "stiffness": 1e5}}, )"
+              R"({"name": "box-floor", "body_i": "ball", "body_j": "ground", )"
+              R"("surface_i": {"type": "box", "lengths": [0.2, 0.2, 0.2]}, "surface_j": {"type": "plane"}, )"
+              R"("normal": {"type": "dvi", "restitution": 0.5}, )"
+              R"("friction": {"law": "coulomb", "mu_s": 0.5, "mu_k": 0.4}}]})",
           bodies + std::string("{") + ball_on_floor +
               R"("normal": {"type": "constraint", "unilateral": true, "restitution": 0.5, )"
               R"("fallback": {"type": "hooke", "stiffness": 1e5}}}, {)" +

@@ -7,6 +7,7 @@
 #include "dae/tree.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace hilda::dae {
@@ -102,6 +103,15 @@ void Model::constrain(const std::string& name, std::unique_ptr<Constraint> c)
         contacts.push_back(contact);
     general_constraint.push_back(std::move(c));
     set_pattern();
+}
+
+void Model::contact(std::unique_ptr<RigidContacts> contacts)
+{
+    const long first = rigid.empty() ? 0 : long{rigid.back()->first_pair} + rigid.back()->numbers();
+    if (first + contacts->numbers() > std::numeric_limits<int>::max())
+        lie::reject("dae::Model", "the rigid contacts of a model may have at most 2^31 pairs", first);
+    contacts->first_pair = static_cast<int>(first);
+    rigid.push_back(std::move(contacts));
 }
 
 void Model::load(std::unique_ptr<Force> f)

@@ -7,6 +7,7 @@
 #include "dae/block.hpp"
 #include "dae/constraints/contact_constraint.hpp"
 #include "dae/forces/near_forces.hpp"
+#include "dae/forces/rigid_contacts.hpp"
 #include "lie/check.hpp"
 #include "lie/system.hpp"
 #include "lie/tree/tree.hpp"
@@ -117,6 +118,9 @@ public:
     void load(std::unique_ptr<ForceGroup> group) { near.add(std::move(group)); }
     /// The forces of the groups
     const NearForces& near_forces() const { return near; }
+    /// Adds rigid contacts. InvalidInput for more than 2^31 pairs in all.
+    void contact(std::unique_ptr<RigidContacts> contacts);
+    const std::vector<std::unique_ptr<RigidContacts>>& rigid_contacts() const { return rigid; }
     /// Calls f(force, number) for each force of forces() and then for the near pairs of the groups in x. The
     /// numbers of the pairs follow those of forces().
     template <class F>
@@ -225,6 +229,9 @@ public:
     void update_alpha(State& x) const override;
     std::vector<lie::BoundedPair> bounded_pairs() const override;
     void update_pairs(const State& x, std::vector<lie::BoundedPair>& pair) const override;
+    bool has_cones() const override { return !rigid.empty(); }
+    void cones(const State& x, double h, lie::ConeRows& out) const override;
+    std::string cone_name(std::uint64_t key) const override;
     /// The spring rows of the forces with Force::implicit
     lie::Springs spring_pattern() const override;
     void update_springs(const State& x, lie::Springs& out) const override;
@@ -286,6 +293,7 @@ private:
     std::vector<std::unique_ptr<Force>> force;
     std::vector<std::vector<int>> forces_on_body;
     NearForces near;
+    std::vector<std::unique_ptr<RigidContacts>> rigid;
     std::vector<std::shared_ptr<TurnCounter>> counters;
     int discrete_states = 0, internal_states = 0;  ///< sizes in the state
     int switching_functions = 0;                   ///< of all forces

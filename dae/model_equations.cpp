@@ -130,6 +130,21 @@ void Model::update_alpha(State& x) const
         if (!inactive(*c, x)) c->update_alpha(arguments(*c, x), false, x.alpha.data() + c->place.alpha);
 }
 
+void Model::cones(const State& x, double h, lie::ConeRows& out) const
+{
+    out.cone.clear();
+    for (const auto& of : rigid) of->add_cones(x, h, out);
+}
+
+std::string Model::cone_name(std::uint64_t key) const
+{
+    const auto pair = static_cast<int>(key >> 32);
+    for (const auto& of : rigid)
+        if (pair < of->first_pair + of->numbers())
+            return "contact '" + of->name_of_pair(pair - of->first_pair) + "'";
+    return "contact point";
+}
+
 std::vector<lie::BoundedPair> Model::bounded_pairs() const
 {
     std::vector<lie::BoundedPair> pairs;

@@ -176,7 +176,7 @@ io::Json model_schema()
         record_model(model, "example of a model", recorder);
         recorder.shown.erase("model");
     }
-    recorder.shown = {"contact", "constraint", "rolling", "implicit"};
+    recorder.shown = {"contact", "constraint", "dvi", "rolling", "implicit", "coulomb"};
     for (const SchemaPart& part : io::Registry<SchemaPart>::all()) {
         for (const std::string& model : part.models) record_model(model, "example of " + part.name, recorder);
         part.record(recorder);

@@ -10,6 +10,7 @@
 #include "dae/rank.hpp"
 #include "dae/start/derivative_check.hpp"
 #include "dae/start/static_friction.hpp"
+#include "lie/cones/overlap_correction.hpp"
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "lie/steps/projection.hpp"
@@ -281,6 +282,35 @@ void check_velocities(const Model& model, const State& x)
 
 }  // namespace
 
+namespace {
+
+/// Why the rigid bodies cannot start in x, "" if they can
+std::string rigid_contact_error(const Model& model, const State& x)
+{
+    for (const auto& contacts : model.rigid_contacts())
+        if (const std::string reason = contacts->start_error(x); !reason.empty())
+            return (contacts->place.empty() ? "" : contacts->place + ": ") + reason;
+    return {};
+}
+
+/// Refuses rigid bodies that overlap, or moves them apart by the shortest motion that keeps the joints
+/// closed. Returns whether bodies have moved.
+bool move_apart(const Model& model, State& x, const StartOptions& options)
+{
+    const std::string error = rigid_contact_error(model, x);
+    if (error.empty()) return false;
+    if (!options.fix_initial) throw lie::InvalidInput(error + "; use --fix-initial to move the bodies apart");
+    constexpr double of_joints = 1e-10;  // [m, rad]
+    lie::OverlapCorrection overlaps(model, of_joints);
+    if (!overlaps.correct(x, 0) || !rigid_contact_error(model, x).empty())
+        throw lie::InvalidInput(error +
+                                "; no motion was found that moves the bodies apart and keeps the joints "
+                                "closed");
+    return true;
+}
+
+}  // namespace
+
 StartReport start(Model& model, State& x, const StartOptions& options)
 {
     check_velocities(model, x);
@@ -320,6 +350,10 @@ StartReport start(Model& model, State& x, const StartOptions& options)
             report.rank -= 2 * c->bounded_pairs();
     report.degrees_of_freedom = 6 * model.bodies() - report.rank;
 
+    if (move_apart(model, x, options)) {
+        report.projected = true;
+        K.assemble(x);
+    }
     if (report.rows > 0) {
         // The velocities as given are checked at the projected positions.
         const Model::Residual velocity = model.largest_velocity_residual(x);
@@ -337,7 +371,8 @@ StartReport start(Model& model, State& x, const StartOptions& options)
                               report.worst_velocity, report.velocity_violation);
     if (model.rows() > 0) {
         lie::project_velocities(model, K, x);
-        report.projected = std::max(report.position_residual, report.velocity_residual) > options.tolerance;
+        report.projected = report.projected ||
+                           std::max(report.position_residual, report.velocity_residual) > options.tolerance;
     }
     solve_with_internal_states(model, K, x);  // those of prepare() belong to positions before the projection
     const StaticStart friction = set_static_friction(model, K, x);

@@ -19,6 +19,7 @@ class Coupling;
 struct RunOptions {
     std::string model;  ///< name of a built-in model, or path of a model file
     std::vector<std::string> integrators{default_integrator};
+    bool chooses_integrator = false;      ///< that of default_integrator_of() in the place of `integrators`
     std::optional<double> step;           ///< [s]; default: 1e-3
     std::optional<double> end, interval;  ///< [s]; defaults: end of the model, end/1000
     lie::Settings settings;

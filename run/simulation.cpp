@@ -10,6 +10,7 @@
 #include "lie/solver/saddle.hpp"
 #include "lie/steps/accelerations.hpp"
 #include "run/diagnosis.hpp"
+#include "run/watch/rigid_contact_findings.hpp"
 #include "run/watch/run_check.hpp"
 
 #include <fmt/format.h>
@@ -77,12 +78,8 @@ void Simulation::resume(const SimulationRecord& from, const std::string& file)
 {
     watch_of_run->restore(from.watch);
     restore(*stepper, *pivots, from);
-    earlier = lie::Statistics();
-    const lie::Statistics preparation = statistics();
-    earlier = {.steps = from.statistics.steps - preparation.steps,
-               .iterations = from.statistics.iterations - preparation.iterations,
-               .factorizations = from.statistics.factorizations - preparation.factorizations,
-               .refactorizations = from.statistics.refactorizations - preparation.refactorizations};
+    earlier = from.statistics;
+    earlier.add_counts(stepper->statistics(), -1);
     progress.emplace(from.node, *stepper, grid_of_run.h, from.number, from.iterations);
     if (events_of_model) events_of_model->open(from.events, file);
     last.number = -1;
@@ -239,8 +236,7 @@ bool Simulation::step()
 lie::Statistics Simulation::statistics() const
 {
     lie::Statistics sum = stepper->statistics();
-    sum.steps += earlier.steps, sum.iterations += earlier.iterations;
-    sum.factorizations += earlier.factorizations, sum.refactorizations += earlier.refactorizations;
+    sum.add(earlier);
     return sum;
 }
 
@@ -366,6 +362,9 @@ std::vector<Finding> Simulation::findings() const
     std::vector<Finding> list = watch_of_run->findings();
     if (std::string rank = rank_warning(*stepper); !rank.empty())
         list.push_back({"nearly_dependent", std::move(rank)});
+    if (!model.rigid_contacts().empty())
+        for (Finding& of_contacts : rigid_contact_findings(statistics()))
+            list.push_back(std::move(of_contacts));
     return list;
 }
 

@@ -36,7 +36,7 @@ SingleRun::SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::
                  .quiet = options.quiet,
                  .verbose = options.verbose,
                  .force = options.force}),
-      options(options), scheme(scheme), directory(directory), earlier(std::move(directory))
+      options(options), scheme(&scheme), directory(directory), earlier(std::move(directory))
 {}
 
 RunResult SingleRun::execute()
@@ -48,6 +48,7 @@ RunResult SingleRun::execute()
 bool SingleRun::read()
 {
     description = named_model(options.model, options.set, options.normal_rows, options.allow_paths);
+    if (options.chooses_integrator) scheme = &lie::scheme(default_integrator_of(*description.model));
     return true;
 }
 
@@ -61,16 +62,16 @@ void SingleRun::check()
     result.start = dae::start(description, {.fix_initial = options.fix_initial});
     result.end = options.end.value_or(from ? from->end : description.end);
     std::optional<double> interval = options.interval;
-    if (!interval && from && scheme.adaptive)
+    if (!interval && from && scheme->adaptive)
         interval = io::number_in<double>(from->settings.at("--interval"));
-    grid = time_grid(scheme, result.end, options.step, interval);
-    if (from && !options.interval && !scheme.adaptive) grid.interval = from->interval;
+    grid = time_grid(*scheme, result.end, options.step, interval);
+    if (from && !options.interval && !scheme->adaptive) grid.interval = from->interval;
     log(fmt::format("{}: initial residuals {:.1e} in position, {:.1e} in velocity{}", description.name,
                     result.start.position_residual, result.start.velocity_residual,
                     result.start.projected ? ", projected" : ""));
-    describe(result, options, scheme, description, grid);
+    describe(result, options, *scheme, description, grid);
     result.directory = directory;
-    const RunIdentity identity{options, scheme, description, grid, result.end, text_of_model()};
+    const RunIdentity identity{options, *scheme, description, grid, result.end, text_of_model()};
     settings = earlier.settings(identity);
     if (from) earlier.check_continues(identity, settings);
     if (!description.events.empty()) refuse_events();
@@ -105,14 +106,14 @@ void SingleRun::make_simulation()
     tables = run_tables(options.outputs, directory,
                         {{"program", version_line()},
                          {"command_line", options.command_line},
-                         {"integrator", scheme.name},
+                         {"integrator", scheme->name},
                          {"model", description.name},
                          {"model_text", text_of_model()}});
     const lie::Settings of_integrator = interruptible(options.settings);
     using Action = Watch::Action;
     SimulationSetup setup{.model = *description.model,
                           .start = description.x,
-                          .scheme = scheme,
+                          .scheme = *scheme,
                           .grid = grid,
                           .settings = of_integrator,
                           .watch = options.strict ? Action::strict : Action::stop,
@@ -144,7 +145,7 @@ void SingleRun::make_simulation()
                      simulation->integrator());
     simulation->observe(*recorder);
     if (!options.error) return;
-    refined.emplace(*description.model, description.x, scheme, of_integrator, grid);
+    refined.emplace(*description.model, description.x, *scheme, of_integrator, grid);
     simulation->observe_checked(*refined);
 }
 
@@ -199,7 +200,7 @@ void SingleRun::end()
         result.wall_seconds = earlier_seconds + seconds();
         // The two sides end one after the other. A run that is killed in between continues from here.
         if (options.coupling != nullptr) save();
-        if (scheme.resumes) final_checkpoint = checkpoint();
+        if (scheme->resumes) final_checkpoint = checkpoint();
         if (options.coupling != nullptr) options.coupling->before_finish();
         const Outcome& outcome = simulation->run();
         if (outcome.status == "interrupted") return interrupted();
@@ -261,7 +262,7 @@ std::vector<std::string> SingleRun::files_of_run()
     add(recorder->files());
     if (RunEvents* const events = simulation->events()) add(events->files());
     all.emplace_back("summary.json");
-    if (status == "interrupted" && scheme.resumes) all.emplace_back("checkpoint");
+    if (status == "interrupted" && scheme->resumes) all.emplace_back("checkpoint");
     return all;
 }
 

@@ -21,7 +21,8 @@ namespace hilda::run {
 
 class SingleRun : private io::Resumable {
 public:
-    /// Options and scheme must outlive this object.
+    /// Options and scheme must outlive this object. The scheme is another one if the options choose that of
+    /// the model.
     SingleRun(const RunOptions& options, const lie::Scheme& scheme, std::string directory);
 
     /// Reads the model, integrates, writes the files and returns the result. A numerical failure or an
@@ -46,7 +47,7 @@ private:
     void show(io::ProgressLine& on, Clock::time_point now) const override;
     void before_save() override;
     void write(const io::Append& append) override;
-    bool can_be_resumed() const override { return scheme.resumes; }
+    bool can_be_resumed() const override { return scheme->resumes; }
     bool can_be_extended() const override { return !final_checkpoint.empty(); }
 
     void prepare_coupling();
@@ -59,7 +60,7 @@ private:
     std::vector<std::string> files_of_run();
 
     const RunOptions& options;
-    const lie::Scheme& scheme;
+    const lie::Scheme* scheme;
     const std::string directory;
     dae::Description description;
     lie::TimeGrid grid;

@@ -52,6 +52,7 @@ void describe(RunResult& r, const RunOptions& options, const lie::Scheme& scheme
         r.atol = options.settings.atol > 0 ? options.settings.atol : options.settings.rtol;
     }
     r.bodies = description.model->bodies();
+    r.rigid_contacts = static_cast<int>(description.model->rigid_contacts().size());
     r.constraints = description.model->constraints();
     for (const contact::EvolvingContact* c : evolving_contacts(*description.model))
         r.contacts.push_back(c->name);
@@ -107,6 +108,13 @@ io::Json summary(const RunResult& r)
                        {"refactorizations", r.statistics.refactorizations},
                        {"rows", r.invariants.rows},
                        {"t", r.t}};
+    if (r.rigid_contacts > 0)
+        out["rigid_contacts"] = {{"iterations", r.statistics.cone_iterations},
+                                 {"factorizations", r.statistics.cone_factorizations},
+                                 {"law_residual", r.statistics.cone_residual},
+                                 {"overlap", r.statistics.overlap},
+                                 {"friction_relaxed", r.statistics.friction_relaxed},
+                                 {"restitution_reduced", r.statistics.restitution_reduced}};
     out["invariants"] = {{"constraint_norm", r.invariants.constraint_norm},
                          {"orthogonality", r.invariants.orthogonality},
                          {"energy_start", r.invariants.energy_start},
@@ -185,6 +193,9 @@ void print(const RunResult& r, std::ostream& out)
             line(k == 0 ? "contacts" : "",
                  fmt::format("{}: F_N from {:.6g} to {:.6g} N", r.contacts[k],
                              r.invariants.contact[k].F_N_least, r.invariants.contact[k].F_N_most));
+    if (r.rigid_contacts > 0)
+        line("contact law", fmt::format("{:.1e} m/s, largest residual; overlap at most {:.1e} of a size",
+                                        r.statistics.cone_residual, r.statistics.overlap));
     for (const EventCount& e : r.located)
         line(&e == r.located.data() ? "events" : "",
              e.name + ": " +

@@ -37,7 +37,7 @@ struct RunResult {
     double rtol = 0, atol = 0;  ///< of an adaptive scheme, whose nodes are the output rows; 0: fixed step
     double t = 0;               ///< time reached [s]
 
-    int bodies = 0, constraints = 0;
+    int bodies = 0, constraints = 0, rigid_contacts = 0;
     std::vector<std::string> contacts;  ///< names of the contact constraints
     /// Event of a unilateral contact: closing, impact, lift-off or switch to the fallback
     struct Event {

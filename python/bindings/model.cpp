@@ -9,6 +9,7 @@
 #include "python/bindings/state.hpp"
 #include "python/bindings/surface.hpp"
 #include "run/named_model.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/framework/problem.hpp"
 
 #include <fmt/format.h>
@@ -149,6 +150,9 @@ void define_model(py::module_& m)
         .def_property_readonly("warnings",
                                [](const ModelObject& model) { return model.description.warnings; })
         .def_property_readonly("bodies", &names_of_bodies)
+        .def_property_readonly(
+            "default_integrator",
+            [](const ModelObject& model) { return run::default_integrator_of(*model.description.model); })
         .def_property_readonly("report", [](const ModelObject& model) { return report(model); })
         .def("state", [](const ModelObject& model) {
             return std::make_shared<StateObject>(StateObject{model.description.x, false});

@@ -77,6 +77,8 @@ py::dict counters(const lie::Statistics& of)
     all["iterations"] = of.iterations;
     all["factorizations"] = of.factorizations;
     all["refactorizations"] = of.refactorizations;
+    all["friction_relaxed"] = of.friction_relaxed;
+    all["restitution_reduced"] = of.restitution_reduced;
     return all;
 }
 

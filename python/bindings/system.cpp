@@ -159,10 +159,11 @@ M v' + C^T lambda = (F, n_bar - omega_bar x J omega_bar),   Phi(r, A, t) = 0,   
         .def(py::init([](const ModelPointer& model) {
                  const lie::Rows& C = model->description.model->pattern();
                  if (C.algebraic_variables() > 0 || C.velocity_rows > 0 || !C.unilateral.empty() ||
-                     model->description.model->keeps_redundant_rows())
+                     model->description.model->keeps_redundant_rows() ||
+                     model->description.model->has_cones())
                      throw io::InvalidInput(
                          "integrators in Python take models without contacts as constraints, "
-                         "rolling without slip and redundant rows");
+                         "rolling without slip, redundant rows and rigid contacts");
                  return std::make_shared<SystemObject>(model);
              }),
              py::keep_alive<1, 2>())  // the garbage collector must not clear functions that this object calls

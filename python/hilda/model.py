@@ -225,7 +225,7 @@ class Model:
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 
-    def run(self, integrator: str | type[Integrator] = _hilda.default_integrator, *, end: float | None = None,
+    def run(self, integrator: str | type[Integrator] | None = None, *, end: float | None = None,
             step: float | None = None, interval: float | None = None, rtol: float | None = None,
             atol: float | None = None, max_step: float | None = None, tolerance: float | None = None,
             max_iterations: int | None = None, linear_solver: str | None = None, rho_infinity: float | None = None,
@@ -234,7 +234,8 @@ class Model:
         """Integrates the model and returns a Result.
 
         Args:
-            integrator: name of an integrator, see integrators(), or a class derived from Integrator.
+            integrator: name of an integrator, see integrators(), or a class derived from Integrator; default:
+                rA-half-1-momentum, for models with rigid contacts rA-moreau-1.
             end: end of the run [s]; default: that of the model.
             step: step [s]; default 1e-3 for integrators with a fixed step. Integrators with adaptive steps take
                 rtol and atol instead.
@@ -296,7 +297,7 @@ class Model:
                 f"{report['degrees_of_freedom']} degrees of freedom>")
 
 
-def run(model: Model | Source, integrator: str | type[Integrator] = _hilda.default_integrator, **options: Any) -> Result:
+def run(model: Model | Source, integrator: str | type[Integrator] | None = None, **options: Any) -> Result:
     """Integrates a model: a Model, the path of a model file, the name of a built-in model, or a dict.
 
     The options are those of Model.run().
@@ -304,8 +305,10 @@ def run(model: Model | Source, integrator: str | type[Integrator] = _hilda.defau
     return (model if isinstance(model, Model) else Model(model)).run(integrator, **options)
 
 
-def _used(where: str, core: _hilda._Model, integrator: str | type[Integrator]) -> str | Integrator:
-    """The name of an integrator, or an object of its class"""
+def _used(where: str, core: _hilda._Model, integrator: str | type[Integrator] | None) -> str | Integrator:
+    """The name of an integrator, or an object of its class; None: that of the model"""
+    if integrator is None:
+        return core.default_integrator
     if isinstance(integrator, str):
         return integrator
     if isinstance(integrator, type) and issubclass(integrator, Integrator):

@@ -48,7 +48,7 @@ class Simulation:
             `set_loads` and `checkpoint` raise UsageError. `restore` continues from an earlier node.
     """
 
-    def __init__(self, model: Model | Source, integrator: str | type[Integrator] = _hilda.default_integrator, *,
+    def __init__(self, model: Model | Source, integrator: str | type[Integrator] | None = None, *,
                  step: float | None = None, end: float | None = None, interval: float | None = None, rtol: float | None = None,
                  atol: float | None = None, max_step: float | None = None, tolerance: float | None = None,
                  max_iterations: int | None = None, linear_solver: str | None = None, rho_infinity: float | None = None,

@@ -47,6 +47,11 @@ lie::Trajectory index1(const dae::Model& model, const lie::State& start, const s
                     "the model must have at least one degree of freedom; for a fully driven mechanism use "
                     "kinematic analysis (dae::Kinematics); degrees of freedom",
                     0);
+    if (model.has_cones())
+        lie::reject(
+            "reference::index1",
+            "a model with rigid contacts cannot be integrated with adaptive steps; number of contacts",
+            model.rigid_contacts().size());
     if (!start.internal_state.empty())
         lie::reject("reference::index1",
                     "a model with continuous internal states (friction histories) cannot be integrated with "

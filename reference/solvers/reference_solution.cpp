@@ -80,6 +80,11 @@ std::optional<lie::Trajectory> from_closed_form(const dae::Model& model, const l
 lie::Trajectory reference_solution(const dae::Model& model, const lie::State& start,
                                    const std::vector<double>& instants)
 {
+    if (model.has_cones())
+        lie::reject("reference::reference_solution",
+                    "a model with rigid contacts has no reference solution with adaptive steps; select an "
+                    "integrator as the reference (--reference NAME); number of rigid contacts",
+                    model.rigid_contacts().size());
     if (!start.internal_state.empty())
         lie::reject(
             "reference::reference_solution",

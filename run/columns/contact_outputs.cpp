@@ -6,6 +6,9 @@
 #include "dae/model.hpp"
 #include "run/columns/state_columns.hpp"
 
+#include <algorithm>
+#include <limits>
+
 namespace hilda::run {
 
 namespace {
@@ -139,6 +142,55 @@ ContactOutputs::ContactOutputs(const dae::Model& model) : model(model)
                 contacts.back().compliant = dynamic_cast<const contact::ContactForce*>(tracked);
         }
     }
+    auto others = static_cast<size_t>(std::max(0, model.near_forces().numbers()));
+    for (const auto& rigid : model.rigid_contacts())
+        if (const auto* of = dynamic_cast<const contact::RigidContacts*>(rigid.get())) add_rigid(*of, others);
+}
+
+void ContactOutputs::add_rigid(const contact::RigidContacts& of, size_t& others)
+{
+    if (of.pairs().count() > most_rigid_pairs_with_columns) {
+        rigid_groups.emplace_back(&of, others);
+        others += static_cast<size_t>(of.numbers());
+        return;
+    }
+    for (int pair = 0; pair < of.numbers(); ++pair)
+        if (of.pairs().has(pair)) {
+            const auto [i, j] = of.pairs().pair(pair);
+            contacts.push_back({.name = of.name_of_pair(pair),
+                                .i = i,
+                                .j = j,
+                                .shape_i = of.shape_i,
+                                .shape_j = of.shape_j,
+                                .rigid = &of,
+                                .pair = pair});
+        }
+}
+
+ContactOutput ContactOutputs::of(const contact::RigidContacts& contacts, int pair, const lie::State& x)
+{
+    static thread_local std::vector<contact::RigidPoint> points;
+    contacts.points(x, pair, points);
+    const auto [i, j] = contacts.pairs().pair(pair);
+    const lie::Motion &bi = dae::motion(x, i), &bj = dae::motion(x, j);
+    if (points.empty()) return geometry(contacts.nearest(x, pair), bi, bj);
+    ContactOutput out;
+    out.gap = std::numeric_limits<double>::infinity();
+    Vec3 normal = Vec3::Zero(), C = Vec3::Zero();
+    bool slips = true;
+    for (const contact::RigidPoint& p : points) {
+        if (p.at.gap < out.gap) out.gap = p.at.gap, out.n = p.at.n, out.C = p.at.C();
+        if (!(p.N > 0)) continue;
+        out.is_touching = true;
+        out.F_N += p.N, normal += p.N * p.at.n, C += p.N * p.at.C(), out.F += p.F;
+        out.slip = std::max(out.slip, slip_speed(p.at, bi, bj));
+        slips = slips && p.slips;
+    }
+    if (!out.is_touching) return out;
+    out.n = normal.normalized(), out.C = C / out.F_N, out.slipping = slips;
+    for (const contact::RigidPoint& p : points)
+        if (p.N > 0) out.T += (p.at.C() - out.C).cross(p.F + p.N * (p.at.n - out.n));
+    return out;
 }
 
 ContactOutput ContactOutputs::of(const contact::ContactForce& force, const lie::State& x)
@@ -155,6 +207,7 @@ ContactOutput ContactOutputs::of(const contact::ContactForce& force, const lie::
 ContactOutput ContactOutputs::at(size_t k, const lie::State& x) const
 {
     const Contact& c = contacts[k];
+    if (c.rigid != nullptr) return of(*c.rigid, c.pair, x);
     if (c.compliant != nullptr && c.compliant->is_active(x)) return of(*c.compliant, x);
     return of_constraint(c, x);
 }

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/rigid/rigid_contacts.hpp"
 #include "dae/model.hpp"
 #include "run/columns/contact_rows.hpp"
 
@@ -11,7 +12,8 @@
 
 namespace hilda::run {
 
-/// A contact at one instant. All vectors are in the global frame.
+/// A contact at one instant. All vectors are in the global frame. A rigid contact of several points has the
+/// sum of their normal forces, its direction, the point where it acts, and the smallest gap.
 struct ContactOutput {
     double F_N = 0;                   ///< normal force [N]; positive in compression
     double gap = 0;                   ///< distance of the surfaces [m], negative for an overlap
@@ -34,6 +36,8 @@ public:
 
     /// Groups with more pairs in all have no columns in tables.
     static constexpr long most_pairs_with_columns = 100000;
+    /// The same for a group of rigid contacts, each of whose pairs is detected for a row
+    static constexpr long most_rigid_pairs_with_columns = 1000;
 
     struct Contact {
         std::string name;
@@ -43,28 +47,39 @@ public:
         const contact::ContactForce* compliant = nullptr;  ///< the contact, or the fallback of the constraint
         const contact::EvolvingContact* constraint = nullptr;
         const contact::EvolvingFriction* friction = nullptr;  ///< of the constraint
+        const contact::RigidContacts* rigid = nullptr;
+        int pair = 0;  ///< of `rigid`
     };
     std::vector<Contact> contacts;  ///< without those of groups, see near_contacts()
 
     /// Contact k in the state x. lie::NumericalFailure if the contact point is not found.
     ContactOutput at(size_t k, const lie::State& x) const;
-    /// Calls f(number, contact, output) for the contacts of groups whose bodies are close to each other in x.
+    /// Calls f(number, body i, output) for the contacts of groups whose bodies are close to each other in x.
     /// The numbers follow those of `contacts`.
     template <class F>
     void near_contacts(const lie::State& x, F f) const
     {
         model.near_forces().visit(x, [&](const dae::Force& force, int number) {
             const auto& contact = static_cast<const contact::ContactForce&>(force);
-            f(contacts.size() + static_cast<size_t>(number), contact, of(contact, x));
+            f(contacts.size() + static_cast<size_t>(number), contact.i, of(contact, x));
         });
+        for (const auto& [rigid, first] : rigid_groups)
+            rigid->for_touching_pairs(x, [&, first = first, rigid = rigid](int pair) {
+                f(contacts.size() + first + static_cast<size_t>(pair), rigid->pairs().pair(pair).first,
+                  of(*rigid, pair, x));
+            });
     }
     static ContactOutput of(const contact::ContactForce& force, const lie::State& x);
+    static ContactOutput of(const contact::RigidContacts& contacts, int pair, const lie::State& x);
 
 private:
+    void add_rigid(const contact::RigidContacts& of, size_t& others);
     ContactOutput of_constraint(const Contact& c, const lie::State& x) const;
 
     const dae::Model& model;
     mutable dae::Constraint::Derivatives derivatives;
+    /// Groups of rigid contacts without columns, with the number of their first pair after `contacts`
+    std::vector<std::pair<const contact::RigidContacts*, size_t>> rigid_groups;
 };
 
 }  // namespace hilda::run

@@ -90,6 +90,11 @@ void add_bodies(const dae::Model& model, const ContactOutputs& contacts,
             for (const int b : of->first_bodies()) add(b, of->shape_i);
             for (const int b : of->second_bodies()) add(b, of->shape_j);
         }
+    for (const auto& rigid : model.rigid_contacts())
+        if (const auto* of = dynamic_cast<const contact::RigidContacts*>(rigid.get())) {
+            for (const int b : of->pairs().first) add(b, of->shape_i);
+            for (const int b : of->pairs().second) add(b, of->shape_j);
+        }
     const std::vector<std::vector<Vec3>> points = attachments(model, connections, true),
                                          without_links = attachments(model, connections, false);
     for (size_t b = 0; b < has_surface.size(); ++b) {
@@ -143,9 +148,7 @@ Drawing::Frame ModelDrawing::frame(const lie::State& x) const
                                   .rolling = now.rolling});
     };
     for (size_t k = 0; k < contacts.contacts.size(); ++k) add(k, contacts.contacts[k].i, contacts.at(k, x));
-    contacts.near_contacts(x, [&](size_t k, const contact::ContactForce& contact, const ContactOutput& now) {
-        add(k, contact.i, now);
-    });
+    contacts.near_contacts(x, add);
     return frame;
 }
 

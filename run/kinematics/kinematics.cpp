@@ -171,6 +171,11 @@ int run_kinematics(const KinematicsOptions& options)
     // turns.
     constexpr double longest = 5e-3;
     const lie::TimeGrid grid = lie::TimeGrid::over(end, interval / std::ceil(interval / longest), interval);
+    if (d.model->has_cones())
+        throw lie::InvalidInput(
+            fmt::format("{}: {} is for models without rigid contacts, whose forces do not "
+                        "follow from the motion",
+                        d.name, command));
     if (start.degrees_of_freedom != 0)
         throw lie::InvalidInput(
             fmt::format("{}: {} needs a model without degrees of freedom, got {}; {}, or integrate it by "

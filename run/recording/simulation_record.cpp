@@ -71,7 +71,8 @@ void check_fits(const SimulationRecord& r, const dae::Model& model, const lie::S
         return e.place >= -1 && e.place < static_cast<long>(count);
     };
     const size_t forces = model.forces().size() + static_cast<size_t>(model.near_forces().numbers());
-    check(in(r.watch.turn, x.body.size()) && in(r.watch.overlap, forces) && in(r.watch.unstable, forces) &&
+    check(in(r.watch.turn, x.body.size()) && in(r.watch.motion, x.body.size()) &&
+              in(r.watch.overlap, forces) && in(r.watch.unstable, forces) &&
               static_cast<long>(r.watch.deepest.size()) == compliant,
           "unknown body or force");
     for (const contact::ContactEvent& e : r.contacts.events)

@@ -47,7 +47,7 @@ EnergyBalance::EnergyBalance(const dae::Model& model, const lie::State& x, doubl
     }
     for (const auto& group : model.near_forces().all_groups())
         dissipates = dissipates || group->example().is_dissipative();
-    dissipates = dissipates || !pairs.empty() ||
+    dissipates = dissipates || !pairs.empty() || !model.rigid_contacts().empty() ||
                  std::any_of(model.general_constraints().begin(), model.general_constraints().end(),
                              [](const auto& c) { return c->may_be_inactive(); });
     moves_early = moves_with_time(model, x, nu);

@@ -38,6 +38,11 @@ void check_step_options(const lie::Scheme& scheme, const std::vector<std::string
     if (interval && *interval == 0) refuse("chooses its own steps; --interval must be positive, got 0");
 }
 
+const char* default_integrator_of(const dae::Model& model)
+{
+    return model.has_cones() ? "rA-moreau-1" : default_integrator;
+}
+
 lie::TimeGrid time_grid(const lie::Scheme& scheme, double end, std::optional<double> step,
                         std::optional<double> interval)
 {

@@ -22,6 +22,8 @@ namespace hilda::run {
 /// The integrator of a run without --integrator: leapfrog in angular momentum, of second order in positions,
 /// velocities and constraint forces
 inline constexpr const char* default_integrator = "rA-half-1-momentum";
+/// The same for this model: rA-moreau-1 if it has rigid contacts
+const char* default_integrator_of(const dae::Model& model);
 inline constexpr double default_step = 1e-3;  ///< [s], of a run without --step
 
 /// io::UsageError "run: NAME ..." for settings (such as --rtol), a step and an output interval that do not

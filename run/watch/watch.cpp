@@ -4,6 +4,7 @@
 #include "contact/compliant/contact_force.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
+#include "run/watch/rigid_contact_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,14 @@ void Watch::accepted(const lie::State& x, long n, int)
                 w > r.turn.value * r.turn.value)
                 r.turn.include(std::sqrt(w), x.t, b);
     if (action == Action::strict && r.turn.value > limits.turn) stop("large_turn", turn_finding().text);
+    for (const auto& contacts : model.rigid_contacts())
+        if (const auto [speed, body] = contacts->fastest(x); body >= 0)
+            r.motion.include(speed * grid.h, x.t, static_cast<size_t>(body));
+    if (action == Action::strict && !model.rigid_contacts().empty()) {
+        if (r.motion.value > limits.motion) stop("large_motion", motion_finding().text);
+        for (const Finding& of_contacts : rigid_contact_findings(integrator.statistics()))
+            stop(of_contacts.name, of_contacts.text);
+    }
     if (const double condition = integrator.statistics().condition; condition < r.condition) {
         r.condition = condition;
         r.condition_t = x.t;
@@ -157,6 +166,16 @@ Finding Watch::turn_finding() const
                     limits.turn)};
 }
 
+Finding Watch::motion_finding() const
+{
+    return {
+        "large_motion",
+        fmt::format(
+            "body '{}' moves by {:.3g} times the width of the thinnest body in one step at t = {:.6g} s; "
+            "rigid bodies can then pass through each other; reduce the step",
+            model.body_name(static_cast<int>(values.motion.place)), values.motion.value, values.motion.t)};
+}
+
 Finding Watch::overlap_finding() const
 {
     return {"large_overlap",
@@ -210,6 +229,7 @@ std::vector<Finding> Watch::findings() const
 {
     std::vector<Finding> all;
     if (values.turn.value > limits.turn) all.push_back(turn_finding());
+    if (values.motion.value > limits.motion) all.push_back(motion_finding());
     if (values.unstable.place >= 0) all.push_back(stability_finding());
     if (values.overlap.value > limits.overlap) all.push_back(overlap_finding());
     if (values.condition < limits.condition) all.push_back(condition_finding());
@@ -249,7 +269,7 @@ io::Json Watch::json() const
 
 void transfer(io::Archive& a, WatchRecord& r)
 {
-    a.value(r.turn), a.value(r.overlap), a.value(r.unstable), a.value(r.ignore_stability);
+    a.value(r.turn), a.value(r.motion), a.value(r.overlap), a.value(r.unstable), a.value(r.ignore_stability);
     a.value(r.condition), a.value(r.condition_t), a.value(r.energy), a.list(r.deepest),
         a.list(r.near_deepest);
 }

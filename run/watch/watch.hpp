@@ -41,6 +41,7 @@ struct DeepestOverlap {
 /// What the checks need of the past of a run; part of checkpoints
 struct WatchRecord {
     Extreme turn;               ///< |ω| h [rad] of a body
+    Extreme motion;             ///< |ṙ| h of a body with rigid contacts, relative to the smallest width
     Extreme overlap;            ///< overlap relative to a radius, see CompliantContact::relative_overlap()
     Extreme unstable;           ///< step above the stability limit: value 1, first time, force
     long ignore_stability = 0;  ///< 1: an unstable step does not end the run
@@ -70,6 +71,7 @@ class Watch final : public lie::Observer {
 public:
     struct Limits {
         double turn = 0.3;     ///< warning [rad]; lie::March refuses π
+        double motion = 1;     ///< warning: a body can pass through another one
         double overlap = 0.1;  ///< warning, relative to a radius; the run ends at `overlap_end`
         double overlap_end = 0.5;
         double condition = 1e-12;  ///< warning; the schemes refuse 1e-14
@@ -93,7 +95,8 @@ public:
           const lie::Scheme& scheme, const lie::TimeGrid& grid, Action action, bool ignore_stability = false);
 
     /// lie::NumericalFailure with the status "unstable_step", "overlap_too_large" or "energy_created"; with
-    /// Action::strict also "large_turn", "large_overlap", "ill_conditioned", "energy_rises" or "energy_lost"
+    /// Action::strict also "large_turn", "large_motion", "friction_relaxed", "restitution_reduced",
+    /// "rigid_overlap", "large_overlap", "ill_conditioned", "energy_rises" or "energy_lost"
     void accepted(const lie::State& x, long n, int iterations) override;
 
     /// Warnings, at the end of a run
@@ -120,6 +123,7 @@ private:
     bool energy_created() const;
 
     Finding turn_finding() const;
+    Finding motion_finding() const;
     Finding overlap_finding() const;
     Finding condition_finding() const;
     Finding stability_finding() const;

@@ -15,6 +15,9 @@ namespace hilda::studies {
 Recommendation recommended_integrator(const dae::Model& model, const lie::State& x, int degrees_of_freedom)
 {
     using lie::LoadEvaluation;
+    if (model.has_cones())
+        return {"rA-moreau-1",
+                "rigid contacts: joints, friction and impacts are solved together in each step"};
     const auto& constraints = model.general_constraints();
     if (std::any_of(constraints.begin(), constraints.end(),
                     [](const auto& c) { return c->algebraic_variables() > 0; }))

@@ -10,6 +10,7 @@
 #include "run/diagnosis.hpp"
 #include "run/jobs/pool.hpp"
 #include "run/simulation.hpp"
+#include "run/watch/run_check.hpp"
 #include "studies/framework/study_options.hpp"
 
 #include <fmt/format.h>
@@ -109,10 +110,12 @@ void Reference::evaluate(Benchmark& c) const
                                ? fmt::format("{} at rtol {}", reference->name, run::step_text(rtol))
                                : fmt::format("{} at h = {:.6g} s", reference->name, step(c));
         if (scheme == nullptr && !options.quiet)
-            io::warning(
-                fmt::format("{}: the internal states of its forces exclude a reference solution with "
-                            "adaptive steps; the reference is {}; --reference selects another",
-                            c.problem.name, c.reference_name));
+            io::warning(fmt::format(
+                "{}: {} exclude a reference solution with adaptive steps; the reference is {}; "
+                "--reference selects another",
+                c.problem.name,
+                c.started->model->has_cones() ? "its rigid contacts" : "the internal states of its forces",
+                c.reference_name));
     }
     for (const lie::State& x : c.reference_solution.row) dae::check_dropped_rows(*c.started->model, x);
     c.size = sizes(*c.started->model, c.reference_solution, c.instants, c.observable);
@@ -182,8 +185,9 @@ lie::Trajectory Reference::less_accurate(const Benchmark& c) const
 /// The integrator of the reference solution; nullptr: the reference solution of the problem
 const lie::Scheme* Reference::scheme_for(const Benchmark& c) const
 {
-    if (scheme != nullptr || !c.problem.general_reference || c.started->x.internal_state.empty())
-        return scheme;
+    if (scheme != nullptr || !c.problem.general_reference) return scheme;
+    if (c.started->model->has_cones()) return &lie::scheme(run::default_integrator_of(*c.started->model));
+    if (c.started->x.internal_state.empty()) return scheme;
     return &lie::scheme(highest_order > 2 ? "rA-rkmk-4" : "rA-half-1-momentum");
 }
 
@@ -191,7 +195,10 @@ const lie::Scheme* Reference::scheme_for(const Benchmark& c) const
 /// to such a step; io::UsageError if --reference-step is not one.
 double Reference::step(const Benchmark& c) const
 {
-    const double wanted = h > 0 ? h : c.instants.dt, nodes = c.instants.dt / wanted;
+    double wanted = h > 0 ? h : c.instants.dt;
+    // The scheme for rigid contacts is of first order, as those that it is compared with.
+    if (c.started->model->has_cones() && scheme == nullptr) wanted /= 2;
+    const double nodes = c.instants.dt / wanted;
     if (options.reference_step && std::abs(nodes - std::round(nodes)) > 1e-6)
         throw io::UsageError(
             fmt::format("--reference-step must divide the interval {:.6g} s of the instants of {}, got {}",

@@ -125,6 +125,39 @@ std::string stability_text(double step)
     return std::isfinite(step) ? fmt::format("stable up to {:.3g} s", step) : "stable with any step";
 }
 
+/// Initial state of a pair of rigid bodies
+struct RigidContactInfo {
+    std::string name;
+    double gap;  ///< the smallest [m]
+    int points;  ///< closer than a hundredth of the smaller size
+};
+
+/// The pairs of rigid contacts; of larger groups only those with contact points
+constexpr long most_pairs_in_full = 30;
+std::vector<RigidContactInfo> rigid_contacts(const dae::Model& model, const lie::State& x)
+{
+    std::vector<RigidContactInfo> all;
+    std::vector<contact::RigidPoint> points;
+    for (const auto& contacts : model.rigid_contacts()) {
+        const auto* of = dynamic_cast<const contact::RigidContacts*>(contacts.get());
+        if (of == nullptr || of->pairs().count() > run::ContactOutputs::most_rigid_pairs_with_columns)
+            continue;
+        for (int pair = 0; pair < of->numbers(); ++pair) {
+            if (!of->pairs().has(pair)) continue;
+            of->points(x, pair, points);
+            if (points.empty() && of->pairs().count() > most_pairs_in_full) continue;
+            all.push_back(
+                {of->name_of_pair(pair), of->nearest(x, pair).gap, static_cast<int>(points.size())});
+        }
+    }
+    return all;
+}
+
+io::Json as_json(const RigidContactInfo& c)
+{
+    return {{"name", c.name}, {"gap", c.gap}, {"points", c.points}};
+}
+
 io::Json as_json(const CompliantContactInfo& c)
 {
     return {{"name", c.name},
@@ -312,6 +345,10 @@ int check_model(const run::CheckOptions& options)
     const Reactions loads = largest_reactions(model, d.x);
     const std::vector<CompliantContactInfo> compliant = compliant_contacts(model, d.x);
     const std::vector<ContactConstraintInfo> constrained = contact_constraints(model, d.x);
+    const std::vector<RigidContactInfo> rigid = rigid_contacts(model, d.x);
+    long rigid_pairs = 0;
+    for (const auto& contacts : model.rigid_contacts())
+        rigid_pairs += dynamic_cast<const contact::RigidContacts&>(*contacts).pairs().count();
     const long pairs = model.near_forces().pairs();  // of groups
     const auto single = std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
         const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
@@ -340,6 +377,7 @@ int check_model(const run::CheckOptions& options)
             {"contacts", io::Json::array()},
             {"contact_pairs", static_cast<long>(single) + pairs},
             {"evolving_contacts", io::Json::array()},
+            {"rigid_contacts", io::Json::array()},
             {"rows", rows},
             {"rank", start.rank},
             {"degrees_of_freedom", start.degrees_of_freedom},
@@ -358,6 +396,7 @@ int check_model(const run::CheckOptions& options)
             for (const auto& [name, value] : d.parameters) out["parameters"][name] = value;
         for (const CompliantContactInfo& c : compliant) out["contacts"].push_back(as_json(c));
         for (const ContactConstraintInfo& c : constrained) out["evolving_contacts"].push_back(as_json(c));
+        for (const RigidContactInfo& c : rigid) out["rigid_contacts"].push_back(as_json(c));
         if (!constrained.empty()) out["condition"] = condition;
         if (fix_initial)
             out["fix_initial"] = {{"projected", start.projected},
@@ -411,6 +450,11 @@ int check_model(const run::CheckOptions& options)
         }
     }
     for (const CompliantContactInfo& c : compliant) line(("  " + c.name + " ").c_str(), to_text(c));
+    if (rigid_pairs > 0) line("rigid contacts", io::counted(rigid_pairs, "pair"));
+    for (const RigidContactInfo& c : rigid)
+        line(("  " + c.name + " ").c_str(),
+             fmt::format("{} {:.3e} m, {}", c.gap > 0 ? "gap" : "overlap", std::abs(c.gap),
+                         io::counted(c.points, "contact point")));
     line("degrees of freedom", std::to_string(start.degrees_of_freedom));
     for (const std::string& row : start.dropped) line("redundant", row);
     if (start.redundant > 0)

@@ -38,7 +38,7 @@ void add_run_options(CLI::App& c, RunArguments& to)
     add_model(c, o.model);
     values(c, "--integrator", "NAME[,NAME...]",
            std::string("integrators, one run each; hilda check names one that suits the model; default: ") +
-               run::default_integrator,
+               run::default_integrator + ", for models with rigid contacts rA-moreau-1",
            append(to.integrators, integrators));
     value(c, "--step", "H",
           "step size [s]; " + names_of([](const lie::Scheme& s) { return s.adaptive_form != nullptr; }) +
@@ -100,6 +100,7 @@ run::RunOptions run_options(const RunArguments& arguments)
     if (!o.figure_formats.empty() && !o.plot)
         throw io::UsageError("run: --figure-format is for figures; it needs --plot");
     if (!arguments.integrators.empty()) o.integrators = arguments.integrators;
+    o.chooses_integrator = arguments.integrators.empty();
     return o;
 }
 

@@ -137,6 +137,21 @@ Vec3 read_semi_axes(dae::ObjectReader& o)
     return semi_axes;
 }
 
+MeshKeys read_mesh_keys(dae::ObjectReader& o, std::string_view about_file)
+{
+    MeshKeys keys;
+    keys.path = o.file("file", {about_file, R"("stone.stl")",
+                                R"("minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$")"});
+    const io::About about_scale = {
+        "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.", "0.001"};
+    o.note("scale", R"("type": "number", "exclusiveMinimum": 0, "default": 1)", about_scale);
+    if (const dae::Json* v = o.find("scale"); v != nullptr) {
+        keys.scale = o.number_at(*v, o.pointer("scale"), "scale");
+        if (!(keys.scale > 0)) o.fail("scale", "scale must be positive, got " + dae::shortest(keys.scale));
+    }
+    return keys;
+}
+
 Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width,
                           const io::About& about)
 {

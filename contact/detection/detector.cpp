@@ -32,12 +32,9 @@ public:
     {
         return detect_exchanged(*ji, bi, bj, from);
     }
-    void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
-                    Manifold& out) const override
+    void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const override
     {
-        const PreviousPoints exchanged =
-            from != nullptr ? PreviousPoints{from->c_j, from->c_i} : PreviousPoints{};
-        ji->detect_all(bj, bi, reach, from != nullptr ? &exchanged : nullptr, out);
+        ji->detect_all(bj, bi, reach, out);
         for (ManifoldPoint& p : out) exchange(p.at);
     }
     bool is_cheap() const override { return ji->is_cheap(); }
@@ -113,11 +110,10 @@ void Manifold::sort()
               [](const ManifoldPoint& a, const ManifoldPoint& b) { return a.feature < b.feature; });
 }
 
-void Detector::detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
-                          Manifold& out) const
+void Detector::detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const
 {
     out.clear();
-    const ContactPoint at = detect(bi, bj, from);
+    const ContactPoint at = detect(bi, bj, nullptr);
     if (at.gap < reach) out.push_back({.at = at, .feature = 0});
 }
 

@@ -43,8 +43,7 @@ public:
     /// Sets `out` to the contact points with a gap below `reach` [m]: several of two bodies with edges, the
     /// one of detect() of others. If the bodies are exchanged, the points are the same bit by bit, with the
     /// opposite normals. Throws as detect().
-    virtual void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints* from,
-                            Manifold& out) const;
+    virtual void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const;
 
     /// Whether detect() takes less time than to store a contact point in the state, and does not use `from`
     virtual bool is_cheap() const { return false; }

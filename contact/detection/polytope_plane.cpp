@@ -29,8 +29,7 @@ public:
         return at.contact_point(body.farthest_vertex(-at.n_i));
     }
 
-    void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints*,
-                    Manifold& out) const override
+    void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const override
     {
         out.clear();
         const Placed at(*this, bi, bj);

@@ -204,15 +204,14 @@ public:
     ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         Manifold found;
-        detect_all(bi, bj, std::numeric_limits<double>::infinity(), nullptr, found);
+        detect_all(bi, bj, std::numeric_limits<double>::infinity(), found);
         return std::min_element(
                    found.begin(), found.end(),
                    [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.at.gap < q.at.gap; })
             ->at;
     }
 
-    void detect_all(const Motion& bi, const Motion& bj, double reach, const PreviousPoints*,
-                    Manifold& out) const override
+    void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const override
     {
         static thread_local Scratch memory;
         out.clear();

@@ -271,20 +271,12 @@ std::shared_ptr<const Surface> read_from_file(dae::ObjectReader& o)
 {
     o.exclude("file", "vertices");
     o.exclude("file", "triangles");
-    const std::string path =
-        o.file("file", {"Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder "
-                        "of the model file and below it, unless --allow-paths is given, instead of vertices "
-                        "and triangles. Corners of an STL file with "
-                        "equal coordinates become one vertex. At most 64 MiB and 200000 triangles.",
-                        R"("stone.stl")", R"("minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$")"});
-    const io::About about_scale = {
-        "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.", "0.001"};
-    double scale = 1;
-    o.note("scale", R"("type": "number", "exclusiveMinimum": 0, "default": 1)", about_scale);
-    if (const dae::Json* v = o.find("scale"); v != nullptr) {
-        scale = o.number_at(*v, o.pointer("scale"), "scale");
-        if (!(scale > 0)) o.fail("scale", "scale must be positive, got " + dae::shortest(scale));
-    }
+    const auto [path, scale] =
+        read_mesh_keys(o,
+                       "Path of an OBJ or STL file (text or binary) with the mesh, relative to the folder "
+                       "of the model file and below it, unless --allow-paths is given, instead of vertices "
+                       "and triangles. Corners of an STL file with "
+                       "equal coordinates become one vertex. At most 64 MiB and 200000 triangles.");
     for (const char* key : {"vertices", "triangles"}) o.record(key, {});  // their order in the canonical form
     const bool concave = read_concave(o);
     try {

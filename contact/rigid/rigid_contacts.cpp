@@ -96,8 +96,7 @@ auto RigidContacts::named(const lie::State& x, int i, int j, const Find& find) c
 
 void RigidContacts::detect(const lie::State& x, int i, int j, double reach, Manifold& out) const
 {
-    named(x, i, j,
-          [&](const Motion& bi, const Motion& bj) { detector->detect_all(bi, bj, reach, nullptr, out); });
+    named(x, i, j, [&](const Motion& bi, const Motion& bj) { detector->detect_all(bi, bj, reach, out); });
 }
 
 ContactPoint RigidContacts::nearest(const lie::State& x, int number) const
@@ -118,7 +117,8 @@ void RigidContacts::find_pairs(const lie::State& x, double h, std::vector<int>& 
     motion.resize(x.body.size());
     for (std::size_t b = 0; b < x.body.size(); ++b) {
         const double R = std::max(std::isfinite(reach_i) ? reach_i : 0, std::isfinite(reach_j) ? reach_j : 0);
-        motion[b] = h * (largest_speed(x.body[b], R) + h * model.gravity.norm()) + least_reach * size;
+        const double acceleration = model.gravity.norm() + x.body[b].rddot.norm();
+        motion[b] = h * (largest_speed(x.body[b], R) + h * acceleration) + least_reach * size;
     }
     find_near_pairs(of, shape_i, shape_j, x.body, motion, numbers);
 }

@@ -16,7 +16,7 @@ namespace hilda::contact {
 
 namespace {
 
-constexpr const char* polytope_name = "contact::Polytope";
+constexpr const char* polytope_name = Polytope::where.data();
 constexpr double coincident = Polytope::tolerance_of_vertices;
 
 /// Normal of a plane polygon times twice its area (Newell)

@@ -6,6 +6,7 @@
 #include "contact/surface.hpp"
 
 #include <array>
+#include <string_view>
 #include <vector>
 
 namespace hilda::contact {
@@ -34,6 +35,7 @@ public:
     /// Distances below `tolerance` times the largest distance from the first point are zero.
     explicit Polytope(std::vector<Vec3> points, double radius = 0, std::string name = "convex",
                       double tolerance = tolerance_of_vertices);
+    static constexpr std::string_view where = "contact::Polytope";  ///< with which its messages begin
     static constexpr double tolerance_of_vertices = 1e-9, tolerance_of_files = 1e-6;
     static Polytope box(const Vec3& lengths, double radius = 0);  ///< edge lengths [m], about the origin
     static Polytope capsule(double length, double radius);        ///< axis z, `length` between the centres

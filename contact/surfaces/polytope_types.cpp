@@ -67,20 +67,11 @@ std::shared_ptr<const Surface> solid(dae::ObjectReader& o, const char* key, std:
 std::shared_ptr<const Surface> read_convex_file(dae::ObjectReader& o)
 {
     o.exclude("file", "vertices");
-    const std::string path = o.file(
-        "file",
-        {"Path of an OBJ or STL file (text or binary) whose corners are those of the body, relative to "
-         "the folder of the model file and below it, unless --allow-paths is given, instead of "
-         "vertices. Corners are in a plane if they are closer to it than a millionth of the size.",
-         R"("stone.stl")", R"("minLength": 5, "pattern": "[.]([oO][bB][jJ]|[sS][tT][lL])$")"});
-    const io::About about_scale = {
-        "Factor of the coordinates of the file [-], for example 0.001 for a file in mm.", "0.001"};
-    double scale = 1;
-    o.note("scale", R"("type": "number", "exclusiveMinimum": 0, "default": 1)", about_scale);
-    if (const dae::Json* v = o.find("scale"); v != nullptr) {
-        scale = o.number_at(*v, o.pointer("scale"), "scale");
-        if (!(scale > 0)) o.fail("scale", "scale must be positive, got " + dae::shortest(scale));
-    }
+    const auto [path, scale] = read_mesh_keys(
+        o,
+        "Path of an OBJ or STL file (text or binary) whose corners are those of the body, relative to "
+        "the folder of the model file and below it, unless --allow-paths is given, instead of "
+        "vertices. Corners are in a plane if they are closer to it than a millionth of the size.");
     o.record("vertices", {});  // its place in the canonical form
     const double radius = read_rounding(o);
     try {
@@ -93,7 +84,9 @@ std::shared_ptr<const Surface> read_convex_file(dae::ObjectReader& o)
     } catch (const dae::PlacedError&) {
         throw;
     } catch (const lie::InvalidInput& e) {
-        o.fail("file", path + ": " + e.what());
+        // Messages about the text of the file begin with its name.
+        const std::string what = e.what();
+        o.fail("file", what.starts_with(Polytope::where) ? path + what.substr(Polytope::where.size()) : what);
     }
 }
 

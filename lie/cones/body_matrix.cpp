@@ -1,32 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lie/cones/body_matrix.hpp"
 
-#include <amd.h>
+#include "lie/solver/minimum_degree.hpp"
 
 #include <algorithm>
-#include <new>
 #include <set>
 
 namespace hilda::lie {
-
-namespace {
-
-/// A minimum degree order of the nodes of a graph, by AMD
-std::vector<int> minimum_degree(const std::vector<std::set<int>>& neighbours)
-{
-    std::vector<int> start{0}, index, order(neighbours.size());
-    index.reserve(1), order.reserve(1);  // AMD rejects null pointers
-    for (const std::set<int>& of : neighbours) {
-        index.insert(index.end(), of.begin(), of.end());
-        start.push_back(static_cast<int>(index.size()));
-    }
-    if (amd_order(static_cast<int>(order.size()), start.data(), index.data(), order.data(), nullptr,
-                  nullptr) < AMD_OK)
-        throw std::bad_alloc();  // the only error for a pattern that is valid
-    return order;
-}
-
-}  // namespace
 
 BodyMatrix::BodyMatrix(const Mass& mass, const Rows& pattern)
     : mass(mass), pattern(pattern), bodies(static_cast<int>(mass.m.size())), of_body(mass.m.size())
@@ -97,7 +77,7 @@ std::vector<int> BodyMatrix::order(const Analysis& of) const
     for (int k = 0; k < pattern.rows(); ++k)
         for (int n = pattern.start[k]; n < pattern.start[k + 1]; ++n)
             for (int l = pattern.start[k]; l < n; ++l) connect(pattern.entry[n].body, pattern.entry[l].body);
-    const std::vector<int> body_order = minimum_degree(neighbours);
+    const std::vector<int> body_order = minimum_degree_order(neighbours);
 
     std::vector<int> position(bodies);
     for (int n = 0; n < bodies; ++n) position[body_order[n]] = n;

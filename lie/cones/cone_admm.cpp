@@ -32,7 +32,9 @@ int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, 
     }
     factor(problem, matrix);
     const auto n = static_cast<Eigen::Index>(p.size());
-    z.resize(4 * n), e.resize(4 * n), plain.resize(4 * n);
+    if (4 * n > memory.rows()) memory.resize(4 * n, 3);
+    Eigen::Ref<Eigen::VectorXd> z = memory.col(0).head(4 * n), e = memory.col(1).head(4 * n),
+                                plain = memory.col(2).head(4 * n);
     acceleration.resize(4 * n, 4 * n);
     int adaptions = 0, halved_at = 0;
     double halved = x.residual, last_change = std::numeric_limits<double>::infinity();
@@ -72,7 +74,7 @@ int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, 
 }
 
 /// (R_c p_c - w_c, s_c), the variables of the fixed point, all velocities
-void ConeAdmm::set_variables(const ConeProblem& problem, Eigen::VectorXd& out) const
+void ConeAdmm::set_variables(const ConeProblem& problem, Eigen::Ref<Eigen::VectorXd> out) const
 {
     const auto n = static_cast<Eigen::Index>(p.size());
     for (Eigen::Index c = 0; c < n; ++c) {
@@ -81,7 +83,7 @@ void ConeAdmm::set_variables(const ConeProblem& problem, Eigen::VectorXd& out) c
     }
 }
 
-void ConeAdmm::take_variables(const ConeProblem& problem, const Eigen::VectorXd& from)
+void ConeAdmm::take_variables(const ConeProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& from)
 {
     const auto n = static_cast<Eigen::Index>(p.size());
     for (Eigen::Index c = 0; c < n; ++c) {

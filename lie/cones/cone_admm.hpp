@@ -50,14 +50,15 @@ private:
     void set_right_side(const ConeProblem& problem);
     void project(const ConeProblem& problem);
     bool adapt_penalty();
-    void set_variables(const ConeProblem& problem, Eigen::VectorXd& out) const;
-    void take_variables(const ConeProblem& problem, const Eigen::VectorXd& from);
+    void set_variables(const ConeProblem& problem, Eigen::Ref<Eigen::VectorXd> out) const;
+    void take_variables(const ConeProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& from);
 
     double rho = 0;
     std::vector<Mat3> W;     ///< 1/R_c; the normal component only for μ = 0
     std::vector<Vec3> p, w;  ///< p_c in the cone, w_c in the dual cone
     Iterate now;             ///< with the impulses that balance the momenta of the bodies
-    Eigen::VectorXd b, z, e, plain;
+    Eigen::VectorXd b;
+    Eigen::MatrixXd memory;  ///< of the variables of the fixed point, their changes, and the next ones
     Anderson acceleration{0, 0};
     double primal = 0, dual = 0;  ///< residuals [m/s]
 };

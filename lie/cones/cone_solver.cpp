@@ -2,8 +2,7 @@
 #include "lie/cones/cone_solver.hpp"
 
 #include "lie/check.hpp"
-
-#include <Eigen/QR>
+#include "lie/steps/anderson.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +12,7 @@ namespace hilda::lie {
 
 namespace {
 
-constexpr int most_admm = 300, most_patient_admm = 3000, most_newton = 50, most_passes = 20, depth = 5;
+constexpr int most_admm = 300, most_patient_admm = 3000, most_newton = 50, most_passes = 20;
 // in units of rounding()
 constexpr double least_rounding = 4, most_rounding = 64;
 // parts of the acceptable residual: the aim of all methods, and the residual below which only the quick ones
@@ -141,13 +140,13 @@ void ConeSolver::solve_relaxed(const ConeProblem& problem, const Iterate& x)
     }
 }
 
-/// Each pass solves the convex problem for the slip terms s. The next ones are those of Anderson (1965) for
-/// the iteration s ← μ |u_t|.
+/// Each pass solves the convex problem for the slip terms s. The next ones are those of Anderson's
+/// acceleration of the iteration s ← μ |u_t|.
 void ConeSolver::solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance)
 {
     const int n = problem.contacts();
-    Eigen::MatrixXd change_s(n, depth), change_f(n, depth);
-    Eigen::VectorXd s(n), f(n), s_before(n), f_before(n);
+    Eigen::VectorXd s(n), change(n);
+    Anderson acceleration(n, n);
     other = x;
     for (int c = 0; c < n; ++c) s[c] = problem.slip_term(c, problem.u(c, x.y));
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -160,18 +159,9 @@ void ConeSolver::solve_by_fixed_point(const ConeProblem& problem, Iterate& x, do
         if (!(other.residual <= of_interior_point.residual)) other = of_interior_point;
         keep_better(problem, x);
         if (x.residual <= tolerance) return;
-        for (int c = 0; c < n; ++c) f[c] = problem.slip_term(c, problem.u(c, other.y)) - s[c];
-        Eigen::VectorXd next = s + f;
-        if (pass > 0) {
-            change_s.col((pass - 1) % depth) = s - s_before;
-            change_f.col((pass - 1) % depth) = f - f_before;
-            const int used = std::min(pass, depth);
-            const Eigen::VectorXd theta = change_f.leftCols(used).colPivHouseholderQr().solve(f);
-            next -= (change_s.leftCols(used) + change_f.leftCols(used)) * theta;
-        }
-        s_before = s;
-        f_before = f;
-        s = next.cwiseMax(0);
+        for (int c = 0; c < n; ++c) change[c] = problem.slip_term(c, problem.u(c, other.y)) - s[c];
+        acceleration.accelerate(s, change);
+        s = (s + change).cwiseMax(0);
     }
 }
 

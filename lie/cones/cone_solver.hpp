@@ -8,8 +8,8 @@
 /// 4. ADMM with up to 3000 iterations, then again with acceleration.
 /// 5. Newton's method from the solution of the convex problem without slip terms, by the interior point
 ///    method.
-/// 6. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson acceleration of
-///    depth 5.
+/// 6. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson
+///    acceleration.
 ///
 /// The result is the iterate with the smallest residual. The methods end at 5·10⁻³ of the acceptable
 /// residual, and those from 4 on are left out below 10⁻¹ of it. A result above the acceptable residual is an

@@ -2,13 +2,11 @@
 /// Order of elimination and lists of operations of the condensed solver.
 #include "lie/solver/condensed.hpp"
 #include "lie/solver/condensed_kernels.hpp"
-
-#include <amd.h>
+#include "lie/solver/minimum_degree.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <map>
-#include <new>
 #include <set>
 
 namespace hilda::lie {
@@ -22,21 +20,6 @@ constexpr size_t most_blocks = 50;
 
 /// Bits 0 to 2: the components of r of the body on which the row entry depends
 unsigned translation_bits(const Rows::Entry& entry) { return entry.nonzero & 0b111; }
-
-/// Order of elimination with little fill-in, by AMD of SuiteSparse
-std::vector<int> minimum_degree_order(const std::vector<std::set<int>>& neighbours)
-{
-    std::vector<int> start{0}, index, order(neighbours.size());
-    index.reserve(1), order.reserve(1);  // AMD rejects null pointers
-    for (const std::set<int>& of_group : neighbours) {
-        index.insert(index.end(), of_group.begin(), of_group.end());
-        start.push_back(static_cast<int>(index.size()));
-    }
-    if (amd_order(static_cast<int>(order.size()), start.data(), index.data(), order.data(), nullptr,
-                  nullptr) < AMD_OK)
-        throw std::bad_alloc();  // the only error for a pattern that is valid
-    return order;
-}
 
 /// The blocks of a column are the neighbours of the group that are eliminated after it, and those of its
 /// children in the elimination tree. The parent of a group is the first of them. Returns the blocks of each

@@ -9,23 +9,25 @@
 namespace hilda::lie {
 
 Anderson::Anderson(Eigen::Index unknowns, Eigen::Index measured)
-    : measured(measured), change_z(unknowns, most), change_e(unknowns, most), z_before(unknowns),
-      e_before(unknowns)
+    : unknowns(unknowns), measured(measured), change_z(unknowns, most), change_e(unknowns, most),
+      z_before(unknowns), e_before(unknowns)
 {}
 
-void Anderson::resize(Eigen::Index unknowns, Eigen::Index of_norm)
+void Anderson::resize(Eigen::Index size, Eigen::Index of_norm)
 {
-    measured = of_norm;
-    change_z.resize(unknowns, most), change_e.resize(unknowns, most);
-    z_before.resize(unknowns), e_before.resize(unknowns);
+    unknowns = size, measured = of_norm;
+    if (size > z_before.size()) {
+        change_z.resize(size, most), change_e.resize(size, most);
+        z_before.resize(size), e_before.resize(size);
+    }
     start();
 }
 
-void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
+void Anderson::accelerate(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::Ref<Eigen::VectorXd> e)
 {
     if (has_before) {
-        change_z.col(next) = z - z_before;
-        change_e.col(next) = e - e_before;
+        change_z.col(next).head(unknowns) = z - z_before.head(unknowns);
+        change_e.col(next).head(unknowns) = e - e_before.head(unknowns);
         const int stored = std::min(count + 1, most);
         for (int i = 0; i < stored; ++i)
             products(i, next) = products(next, i) =
@@ -33,7 +35,7 @@ void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
         next = (next + 1) % most;
         count = stored;
     }
-    z_before = z, e_before = e, has_before = true;
+    z_before.head(unknowns) = z, e_before.head(unknowns) = e, has_before = true;
     if (count == 0) return;
     using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, most, most>;
     using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most, 1>;
@@ -50,7 +52,8 @@ void Anderson::accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e)
     }
     const SmallVector gamma = product.colPivHouseholderQr().solve(right);
     if (!gamma.allFinite()) return;
-    for (int i = 0; i < count; ++i) e -= gamma[i] / length[i] * (change_z.col(i) + change_e.col(i));
+    for (int i = 0; i < count; ++i)
+        e -= gamma[i] / length[i] * (change_z.col(i) + change_e.col(i)).head(unknowns);
 }
 
 }  // namespace hilda::lie

@@ -19,17 +19,18 @@ public:
     /// `unknowns`: size of z; `measured`: how many of them, from the first one on, are in the norm |.|
     Anderson(Eigen::Index unknowns, Eigen::Index measured);
 
-    /// Sets the sizes.
+    /// Sets the sizes, and forgets the earlier corrections. It allocates if there are more unknowns than ever
+    /// before.
     void resize(Eigen::Index unknowns, Eigen::Index measured);
     /// Forgets the earlier corrections.
     void start() { count = next = 0, has_before = false; }
     /// Replaces the correction e of the iterate z by the accelerated one.
-    void accelerate(const Eigen::VectorXd& z, Eigen::VectorXd& e);
+    void accelerate(const Eigen::Ref<const Eigen::VectorXd>& z, Eigen::Ref<Eigen::VectorXd> e);
 
 private:
     static constexpr int most = 8;
 
-    Eigen::Index measured;
+    Eigen::Index unknowns, measured;
     Eigen::MatrixXd change_z, change_e;
     Eigen::Matrix<double, most, most> products;  ///< scalar products of the columns of ΔE
     Eigen::VectorXd z_before, e_before;

@@ -16,7 +16,7 @@ Recommendation recommended_integrator(const dae::Model& model, const lie::State&
 {
     using lie::LoadEvaluation;
     if (model.has_cones())
-        return {"rA-moreau-1",
+        return {run::default_integrator_of(model),
                 "rigid contacts: joints, friction and impacts are solved together in each step"};
     const auto& constraints = model.general_constraints();
     if (std::any_of(constraints.begin(), constraints.end(),

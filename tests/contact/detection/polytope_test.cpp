@@ -168,8 +168,8 @@ TEST_CASE("the depth of two polytopes is that of all separating axes, and the po
                     at_b{.r = Vec3(0.1, 0.2, 0.3), .A = random_rotation(random)};
                 const long double truth = separation(*a, at_a, *b, at_b);
                 Manifold m, other;
-                detector->detect_all(at_a, at_b, 1e-3, nullptr, m);
-                exchanged->detect_all(at_b, at_a, 1e-3, nullptr, other);
+                detector->detect_all(at_a, at_b, 1e-3, m);
+                exchanged->detect_all(at_b, at_a, 1e-3, other);
                 REQUIRE(m.size() == other.size());
                 check_consistent(m, 1);
                 for (const ManifoldPoint& q : m)  // those of the exchanged bodies, to the bit
@@ -202,7 +202,7 @@ TEST_CASE("flat on flat has four points or more, and keeps its features", "[cont
     for (const double angle : {0., 0.1, 0.4, M_PI / 4}) {
         Motion above{.r = Vec3(0, 0, 1 - 1e-6),
                      .A = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix()};
-        detector->detect_all(above, below, 1e-3, nullptr, m);
+        detector->detect_all(above, below, 1e-3, m);
         CHECK(m.size() == (angle == 0 ? 4 : 8));
         check_consistent(m, 1);
         for (const ManifoldPoint& p : m) {
@@ -213,23 +213,21 @@ TEST_CASE("flat on flat has four points or more, and keeps its features", "[cont
     // shifts by rounding errors and tilts below 1e-9 do not change the features
     std::mt19937 random(1);
     std::uniform_real_distribution<double> unit(-1, 1);
-    detector->detect_all({.r = Vec3(0, 0, 1)}, below, 1e-3, nullptr, before);
+    detector->detect_all({.r = Vec3(0, 0, 1)}, below, 1e-3, before);
     REQUIRE(before.size() == 4);
     for (int k = 0; k < 100; ++k) {
         const Vec3 tilt = 1e-10 * Vec3(unit(random), unit(random), unit(random));
         detector->detect_all({.r = Vec3(0, 0, 1) + 1e-12 * Vec3(unit(random), unit(random), unit(random)),
                               .A = lie::exp(tilt)},
-                             below, 1e-3, nullptr, m);
+                             below, 1e-3, m);
         REQUIRE(m.size() == 4);
         for (int n = 0; n < 4; ++n) CHECK(m[n].feature == before[n].feature);
     }
     // a small box on a large one and below it: the corners of the small one
     const auto large = shared(Polytope::box(Vec3(100, 100, 1)));
-    make_detector({.surface = box}, {.surface = large})
-        ->detect_all({.r = Vec3(3, -7, 1)}, below, 1e-3, nullptr, m);
+    make_detector({.surface = box}, {.surface = large})->detect_all({.r = Vec3(3, -7, 1)}, below, 1e-3, m);
     CHECK(m.size() == 4);
-    make_detector({.surface = large}, {.surface = box})
-        ->detect_all({.r = Vec3(3, -7, 1)}, below, 1e-3, nullptr, m);
+    make_detector({.surface = large}, {.surface = box})->detect_all({.r = Vec3(3, -7, 1)}, below, 1e-3, m);
     CHECK(m.size() == 4);
     CHECK(least_gap(m) == Approx(0).margin(1e-12));
 }
@@ -241,8 +239,7 @@ TEST_CASE("separated polytopes have the distance of their nearest parts", "[cont
     const Motion at;
     Manifold m;
     // vertex against vertex along the diagonal
-    make_detector({.surface = box}, {.surface = box})
-        ->detect_all({.r = Vec3(1.1, 1.1, 1.1)}, at, 1, nullptr, m);
+    make_detector({.surface = box}, {.surface = box})->detect_all({.r = Vec3(1.1, 1.1, 1.1)}, at, 1, m);
     REQUIRE(m.size() == 1);
     CHECK(m[0].at.gap == Approx(0.1 * std::sqrt(3)));
     CHECK((m[0].at.n - Vec3(1, 1, 1).normalized()).norm() < 1e-14);
@@ -256,16 +253,16 @@ TEST_CASE("separated polytopes have the distance of their nearest parts", "[cont
     const auto capsules = make_detector({.surface = capsule}, {.surface = capsule});
     const Mat3 turned = Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitX()).toRotationMatrix();
     CHECK(capsules->detect({.r = Vec3(0.3, 0.2, 0.1), .A = turned}, at, nullptr).gap == Approx(0.1));
-    capsules->detect_all({.r = Vec3(0.25, 0, 0.4)}, at, 0.2, nullptr, m);
+    capsules->detect_all({.r = Vec3(0.25, 0, 0.4)}, at, 0.2, m);
     REQUIRE(m.size() == 2);
     CHECK(least_gap(m) == Approx(0.05));
     CHECK(std::abs(m[0].at.C_i.z() - m[1].at.C_i.z()) == Approx(0.6));
     // a capsule that lies on a box: two points; that stands on it: one
     const auto capsule_box = make_detector({.surface = capsule}, {.surface = box});
-    capsule_box->detect_all({.r = Vec3(0.2, 0, 0.6), .A = turned}, at, 0.01, nullptr, m);
+    capsule_box->detect_all({.r = Vec3(0.2, 0, 0.6), .A = turned}, at, 0.01, m);
     CHECK(m.size() == 2);
     CHECK(least_gap(m) == Approx(0).margin(1e-14));
-    capsule_box->detect_all({.r = Vec3(0.2, 0, 1.1)}, at, 0.01, nullptr, m);
+    capsule_box->detect_all({.r = Vec3(0.2, 0, 1.1)}, at, 0.01, m);
     CHECK(m.size() == 1);
 }
 
@@ -289,7 +286,7 @@ TEST_CASE("the nearest parts of two polytopes are among their contact points for
                 const double gap = detector->detect(i, j, nullptr).gap;
                 Manifold m;
                 for (const double reach : {1e-3, 0.1, 0.5}) {
-                    detector->detect_all(i, j, reach, nullptr, m);
+                    detector->detect_all(i, j, reach, m);
                     CAPTURE(first->name(), second->name(), gap, reach);
                     REQUIRE(m.empty() == (gap >= reach));
                     if (m.empty()) continue;
@@ -307,7 +304,7 @@ TEST_CASE("an edge that lies in a face touches at both ends", "[contact][detecti
     const auto detector = make_detector({.surface = box}, {.surface = plate});
     const Mat3 on_edge = lie::exp(Vec3(0, 1e-4, 0)) * lie::exp(Vec3(M_PI / 4, 0, 0));
     Manifold m;
-    detector->detect_all({.r = Vec3(0, 0, 0.05 + std::sqrt(0.125)), .A = on_edge}, {}, 1e-3, nullptr, m);
+    detector->detect_all({.r = Vec3(0, 0, 0.05 + std::sqrt(0.125)), .A = on_edge}, {}, 1e-3, m);
     REQUIRE(m.size() == 2);
     CHECK(std::abs(m[0].at.C_i.x() - m[1].at.C_i.x()) == Approx(1).epsilon(1e-3));
     CHECK(std::abs(m[0].at.gap - m[1].at.gap) == Approx(1e-4).epsilon(1e-3));
@@ -319,7 +316,7 @@ TEST_CASE("a polytope touches a plane with its vertices", "[contact][detection]"
     const Shape plane{.surface = std::make_shared<const Plane>(), .position = Vec3(0, 0, 1)};
     const auto detector = make_detector({.surface = box}, plane);
     Manifold m;
-    detector->detect_all({.r = Vec3(4, 5, 2.5 - 1e-3)}, {}, 1e-6, nullptr, m);
+    detector->detect_all({.r = Vec3(4, 5, 2.5 - 1e-3)}, {}, 1e-6, m);
     REQUIRE(m.size() == 4);
     for (const ManifoldPoint& p : m) {
         CHECK(p.at.gap == Approx(-1e-3));
@@ -334,8 +331,7 @@ TEST_CASE("a polytope touches a plane with its vertices", "[contact][detection]"
     std::vector<Vec3> prism;
     for (int k = 0; k < 12; ++k)
         for (const double z : {0., 1.}) prism.emplace_back(std::cos(M_PI * k / 6), std::sin(M_PI * k / 6), z);
-    make_detector({.surface = shared(Polytope(prism))}, plane)
-        ->detect_all({.r = Vec3(0, 0, 1)}, {}, 0.1, nullptr, m);
+    make_detector({.surface = shared(Polytope(prism))}, plane)->detect_all({.r = Vec3(0, 0, 1)}, {}, 0.1, m);
     CHECK(m.size() == 8);
     check_consistent(m, 1);
 }

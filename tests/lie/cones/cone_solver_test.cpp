@@ -59,7 +59,7 @@ TEST_CASE("the conditions of the contact law hold for stacks and chains with lar
     }
 }
 
-TEST_CASE("stacks with random velocities are solved from a cold start, and what is not is reported (long)",
+TEST_CASE("stacks with random velocities are solved from a cold start, or reported as relaxed (long)",
           "[lie][cones]")
 {
     // violent sliding of ten boxes, with equal masses and with a top box of 1e4 kg

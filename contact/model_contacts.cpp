@@ -408,7 +408,7 @@ void add_evolving(ObjectReader& o, ObjectReader normal, const ContactPair& pair,
 bool add_rigid(ObjectReader& o, ObjectReader normal, const ContactPair& pair, const Shape& i, const Shape& j)
 {
     io::defines_type(normal, normal_kind, "dvi", "dvi", rigid_schema);
-    RigidContactLaw law;
+    RigidLaw law;
     law.restitution = normal.fraction("restitution",
                                       {"Newton's coefficient of restitution e [-]: the velocity of "
                                        "separation of a contact point is e times "

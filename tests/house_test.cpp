@@ -103,7 +103,7 @@ const std::map<std::string, std::set<std::string>> folders = {
     {"dae", {"", "constraints", "curves", "forces", "joints", "outputs", "start"}},
     {"contact",
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "rigid",
-      "scenes", "scenes/dvi", "surfaces"}},
+      "scenes", "surfaces"}},
     {"granular",
      {"",
       "backend",
@@ -450,7 +450,7 @@ TEST_CASE("a folder of tests has the name of the folder that it tests", "[house]
             const std::string folder = fs::relative(entry.path(), tests).generic_string();
             if (folder.ends_with("__pycache__")) continue;
             INFO(tests.generic_string() << "/" << folder);
-            CHECK((known.count(folder) == 1 || folder == "scenes/siconos"));
+            CHECK((known.count(folder) == 1 || folder == "cones/siconos"));
         }
     }
 }

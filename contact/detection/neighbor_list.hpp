@@ -36,8 +36,7 @@ public:
         State state = {};
     };
 
-    double margin = 0;  ///< the list contains all pairs of bounding spheres that are closer than this [m]
-    double skin = 0.1;  ///< additional distance at a rebuild, relative to the smallest reach
+    double skin = 0.1;  ///< distance of the bounding spheres of the pairs at a rebuild, by the smallest reach
 
     /// Adds a body type and returns its number. Throws lie::InvalidInput unless the reach is positive.
     int add_type(const BodyType& type)
@@ -66,7 +65,7 @@ public:
         reach.resize(b, -1);
         type_of.push_back(k);
         reach.push_back(body_type(k).reach);
-        reference_position.clear();
+        is_current = false;
     }
 
     /// Sets the law of a pair of types, which may be equal. Bodies whose types have no law do not interact.
@@ -81,7 +80,7 @@ public:
             lie::reject("contact::NeighborList",
                         "a pair of body types must have one law only; law set again for type", type_j);
         laws[type_i][type_j] = std::move(law);
-        reference_position.clear();
+        is_current = false;
     }
 
     /// The pairs at these poses; the list is rebuilt if necessary. `body` holds all bodies of the system.
@@ -101,7 +100,7 @@ public:
         BroadPhase once;
         std::vector<Vec3> at;
         for (size_t b = 0; b < reach.size(); ++b) at.push_back(body[b].r);
-        for (const Candidate& c : once.find(at, reach, margin + skin_length()))
+        for (const Candidate& c : once.find(at, reach, skin_length()))
             if (const Pair p = pair_of(c); p.law != nullptr) out.push_back(p);
         return out;
     }
@@ -126,7 +125,7 @@ private:
     bool needs_update(const std::vector<Motion>& body) const
     {
         if (types.empty()) return false;
-        if (reference_position.empty() || margin != reference_margin) return true;
+        if (!is_current) return true;
         const double half = 0.5 * skin_length();
         for (size_t b = 0; b < reference_position.size(); ++b)
             if (std::isfinite(reach[b]) && reach[b] > 0 &&
@@ -139,9 +138,9 @@ private:
     {
         reference_position.clear();
         for (size_t b = 0; b < reach.size(); ++b) reference_position.push_back(body[b].r);
-        reference_margin = std::numeric_limits<double>::quiet_NaN();  // forces an update if the search throws
-        const auto& candidates = broad_phase.find(reference_position, reach, margin + skin_length());
-        reference_margin = margin;
+        is_current = false;  // if the search throws
+        const auto& candidates = broad_phase.find(reference_position, reach, skin_length());
+        is_current = true;
 
         previous.swap(pairs);
         pairs.clear();
@@ -162,7 +161,7 @@ private:
     std::vector<int> type_of;   // type of each body, or none
     std::vector<double> reach;  // of each body [m], negative for bodies without a type
     std::vector<Vec3> reference_position;
-    double reference_margin = 0;
+    bool is_current = false;  // whether the list is that of the reference positions
     BroadPhase broad_phase;
     std::vector<Pair> pairs, previous;
 };

@@ -51,9 +51,9 @@ std::uint32_t ordered(std::uint32_t feature, int i, int j)
 
 }  // namespace
 
-void RigidContactLaw::validate() const
+void RigidLaw::validate() const
 {
-    constexpr const char* where = "contact::RigidContactLaw";
+    constexpr const char* where = "contact::RigidLaw";
     if (!(mu_k >= 0) || !std::isfinite(mu_k)) lie::reject(where, "mu_k must not be negative", mu_k);
     if (!(mu_s >= mu_k) || !std::isfinite(mu_s)) lie::reject(where, "mu_s must not be below mu_k", mu_s);
     if (!(restitution >= 0 && restitution <= 1))
@@ -61,7 +61,7 @@ void RigidContactLaw::validate() const
 }
 
 RigidContacts::RigidContacts(std::string name, const dae::Model& model, ContactPairs pairs, Shape i, Shape j,
-                             const RigidContactLaw& law)
+                             const RigidLaw& law)
     : name(std::move(name)), shape_i(std::move(i)), shape_j(std::move(j)), law(law), model(model),
       of(std::move(pairs)), detector(make_detector(shape_i, shape_j)), size(smaller_size(shape_i, shape_j)),
       reach_i(reach_about_centre(shape_i)), reach_j(reach_about_centre(shape_j))

@@ -19,7 +19,7 @@ namespace hilda::contact {
 
 /// The law of a rigid contact: Signorini's condition with Newton's coefficient of restitution, and Coulomb's
 /// law
-struct RigidContactLaw {
+struct RigidLaw {
     double mu_s = 0, mu_k = 0;  ///< coefficients of a contact point that sticks, that slips; mu_s ≥ mu_k ≥ 0
     double restitution = 0;     ///< in [0, 1]
 
@@ -42,7 +42,7 @@ public:
     /// shape_i, shape_j: of the first and the second body of each pair. InvalidInput for a pair of surfaces
     /// without a detector.
     RigidContacts(std::string name, const dae::Model& model, ContactPairs pairs, Shape shape_i, Shape shape_j,
-                  const RigidContactLaw& law);
+                  const RigidLaw& law);
 
     int numbers() const override { return of.numbers(); }
     void add_cones(const lie::State& x, double h, lie::ConeRows& out) const override;
@@ -71,7 +71,7 @@ public:
 
     const std::string name;
     const Shape shape_i, shape_j;
-    const RigidContactLaw law;
+    const RigidLaw law;
 
 private:
     template <class Find>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Functions shared by the scenes of free bodies (Scene, DviScene).
+/// Functions of scenes of free bodies.
 
 #pragma once
 

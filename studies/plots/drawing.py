@@ -42,7 +42,7 @@ STYLES = {
     "rA-dp-5": ("#b2182b", "d"), "rA-dop853": ("#1a9850", "p"), "rA-radau-5": ("#01665e", "h"),
     "ida-rp": ("#000000", "h"), "ida-rp-baumgarte": ("#444444", "H"), "ida-rp-index1": ("#888888", "8"),
     "evolving": ("#0072b2", "o"), "evolving, KLU": ("#56b4e9", "^"), "evolving, text": ("#332288", "d"),
-    "DVI": ("#d55e00", "s"), "DVI, not stabilised": ("#e69f00", "v"), "DVI, text": ("#cc79a7", "<"), "DEM": ("#009e73", "P"),
+    "DVI": ("#d55e00", "s"), "DEM": ("#009e73", "P"),
     "rp-full-1": ("#a6611a", "s"), "rp-bdf2": ("#dfc27d", "D"),
     "rp-half-1": ("#7f7f7f", "o"), "rp-half-1-kick": ("#b0b0b0", "^"),
     "reps-half-1": ("#4d4d4d", "p"), "reps-half-1-kick": ("#969696", ">"),

@@ -149,19 +149,6 @@ std::vector<contact::Candidate> contact_pairs(const ContactScene& setup, double 
     return out;
 }
 
-contact::DviScene rigid(const ContactScene& setup)
-{
-    contact::DviScene scene;
-    // as published; in piles Coulomb's law need not converge
-    scene.options.sliding = contact::DviOptions::convex;
-    scene.gravity = setup.gravity;
-    scene.neighbors.margin = 0.2 * setup.R;
-    for (const BodyType& k : setup.body_types) scene.add(k);
-    for (const auto& m : setup.interaction) scene.set_contact_law(m.name, m.type_i, m.type_j, {.mu = m.mu});
-    for (const auto& b : setup.body) scene.add_body(b.type, b.start);
-    return scene;
-}
-
 contact::Scene compliant(const ContactScene& setup, const Compliance& compliance)
 {
     contact::Scene scene;

@@ -4,7 +4,6 @@
 
 #pragma once
 
-#include "contact/scenes/dvi/dvi_scene.hpp"
 #include "contact/scenes/scene.hpp"
 
 namespace hilda::studies {
@@ -77,9 +76,6 @@ ContactScene scene(const RollingChain& chain);
 
 /// Pairs of bodies with a gap below `gap` [m] at the start, for methods with a fixed set of contacts
 std::vector<contact::Candidate> contact_pairs(const ContactScene& setup, double gap);
-
-/// Rigid contacts, as a differential variational inequality. The margin of the neighbour list is R/5.
-contact::DviScene rigid(const ContactScene& setup);
 
 /// Compliant contacts: linear normal springs, friction law slide-roll-spin without rolling resistance
 struct Compliance {

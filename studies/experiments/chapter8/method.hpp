@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Common interface of the contact methods: evolving contact constraints, a differential variational
-/// inequality (DVI) and springs (DEM).
+/// Common interface of the contact methods: evolving contact constraints, rigid contacts as a differential
+/// variational inequality (DVI) and springs (DEM).
 
 #pragma once
 
@@ -18,7 +18,8 @@ struct Method {
     /// Body b of the scene at the current node, with the velocities that the method stores
     std::function<const lie::Motion&(int b)> body;
     std::function<int()> contacts;  ///< number of active contacts in the last step
-    /// Accumulated iterations: of Newton's method or of the cone solver; for springs the number of steps
+    /// Accumulated iterations: of Newton's method or of the methods for rigid contacts; for springs the
+    /// number of steps
     std::function<long()> iterations;
     /// Number of contact events (closing, impact, lift-off, switch to the fallback), for methods that locate
     /// them
@@ -33,18 +34,11 @@ struct EvolvingOptions {
     double reach = 0;          ///< pairs with a smaller gap at the start are contacts [m]
     bool unilateral = false;   ///< unilateral contacts with restitution 0
 };
-/// Frictionless evolving contacts. Bodies without a finite mass are part of the ground. InvalidInput for a
-/// moving body without a finite mass and for a scene with friction.
+/// Frictionless evolving contacts of the bodies of a ModelScene. InvalidInput for a scene with friction.
 Method evolving(const ContactScene& setup, const EvolvingOptions& options);
 
-/// Options of the differential variational inequality; the tolerance is on impulse over mass [m/s]
-struct DviMethodOptions {
-    bool stabilised = true;
-    bool half_kick = true;
-    double tolerance = 1e-10;
-    int max_iterations = 10000;
-};
-Method dvi(const ContactScene& setup, const DviMethodOptions& options);
+/// Rigid contacts with Coulomb's law and rA-moreau-1, of the bodies of a ModelScene
+Method dvi(const ContactScene& setup);
 
 /// Contact springs; the bodies start exactly as in the scene
 Method compliant_springs(const ContactScene& setup, const Compliance& options);

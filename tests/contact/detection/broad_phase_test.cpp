@@ -167,12 +167,11 @@ BodyType ball(double R) { return {{1, lie::Mat3::Identity()}, {std::make_shared<
 
 }  // namespace
 
-TEST_CASE("a neighbour list contains all pairs within the margin at each step and preserves their states",
+TEST_CASE("a neighbour list contains all pairs that overlap at each step and preserves their states",
           "[contact][broad]")
 {
     tests::Random random(6);
     Balls neighbors;
-    neighbors.margin = 0.02;
     const int small = neighbors.add_type(ball(0.1)), large = neighbors.add_type(ball(0.15));
     const int floor = neighbors.add_type({{}, {std::make_shared<contact::Plane>()}});
     neighbors.set_law(small, small, std::make_unique<Law>(Law{1}));
@@ -191,7 +190,7 @@ TEST_CASE("a neighbour list contains all pairs within the margin at each step an
         neighbors.add_body(b, type.back());
         body.push_back(m);
     }
-    std::map<std::pair<int, int>, int> near;  // number of steps within the margin
+    std::map<std::pair<int, int>, int> near;  // number of steps with an overlap
     for (int step = 0; step < 200; ++step) {
         for (Motion& m : body) m.r += 1e-3 * m.rdot;
         std::set<std::pair<int, int>> listed;
@@ -206,7 +205,7 @@ TEST_CASE("a neighbour list contains all pairs within the margin at each step an
             for (int j = i + 1; j < 60; ++j) {
                 if (type[i] == floor || type[j] == floor) continue;
                 const double R = (type[i] == large ? 0.15 : 0.1) + (type[j] == large ? 0.15 : 0.1);
-                if ((body[i].r - body[j].r).norm() >= R + 0.02) continue;
+                if ((body[i].r - body[j].r).norm() >= R) continue;
                 REQUIRE(listed.count({i, j}) == 1);
                 now[{i, j}] = near.count({i, j}) != 0 ? near[{i, j}] + 1 : 1;
             }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lie/cones/cone_problem.hpp"
+#include "tests/support/random_motion.hpp"
 
 #include <Eigen/LU>
 
@@ -38,13 +39,16 @@ struct BodiesInContact {
         C << axes.transpose(), -axes.transpose() * lie::tilde(s);
         return C;
     }
-    /// A contact point at s_i, s_j from the centres of mass, with the normal z into i; j = -1 is the ground.
-    void add_contact(int i, int j, const Vec3& s_i, const Vec3& s_j, double of_mu)
+    /// A contact point at s_i, s_j from the centres of mass, with the normal n into i; j = -1 is the ground.
+    void add_contact(int i, int j, const Vec3& s_i, const Vec3& s_j, double of_mu,
+                     const Vec3& n = Vec3::UnitZ())
     {
         ConeRows::Cone cone;
         cone.key = cones.size();
         cone.i = i, cone.j = j;
-        cone.axes << Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY();
+        const Vec3 across = std::abs(n.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitZ(),
+                   t = (across - across.dot(n) * n).normalized();
+        cone.axes << n, t, n.cross(t);
         cone.C_i = rows_at(cone.axes, s_i);
         if (j >= 0) cone.C_j = -rows_at(cone.axes, s_j);
         cone.mu_s = cone.mu_k = of_mu;
@@ -136,6 +140,54 @@ inline BodiesInContact hanging_load(int n, double load)
     of.v[6 * heavy] += 0.1;
     return of;
 }
+
+/// Four bodies with random inertia in two layers, which fall on each other and on the ground with random
+/// contact points. fall, slip: speeds without the contacts [m/s]
+inline BodiesInContact falling(unsigned seed, int contacts, double mu, double fall, double slip)
+{
+    Random random(seed);
+    BodiesInContact of;
+    for (int b = 0; b < 4; ++b) {
+        const Mat3 A = random.rotation();
+        const Vec3 J = Vec3(0.5, 0.5, 0.5) + random.vector(0.3);
+        of.mass.m.push_back(random.number(0.5, 2));
+        of.mass.J_bar.push_back((A * J.asDiagonal() * A.transpose()).inverse());
+    }
+    of.v.resize(24);
+    for (int b = 0; b < 4; ++b)
+        of.v.segment<6>(6 * b) << slip * random.vector() - Vec3(0, 0, fall * (5 - b)), slip * random.vector();
+    for (int c = 0; c < contacts; ++c) {
+        const int i = c % 4, j = i < 2 ? i + 2 : -1;  // the upper body first, the ground last
+        const Vec3 n = (Vec3::UnitZ() + random.vector(0.4)).normalized(),
+                   below = Vec3(0, 0, -0.3) + random.vector(0.3);
+        of.add_contact(i, j, below, -below, mu, n);
+    }
+    return of;
+}
+
+/// The velocities of the contact points without joints, u = W p + r
+struct Delassus {
+    Eigen::MatrixXd W;
+    Eigen::VectorXd r;
+
+    explicit Delassus(const BodiesInContact& of)
+    {
+        const auto rows = 3 * static_cast<Eigen::Index>(of.cones.size());
+        Eigen::MatrixXd C = Eigen::MatrixXd::Zero(rows, of.v.size()), by_mass = C;
+        for (Eigen::Index c = 0; 3 * c < rows; ++c) {
+            const ConeRows::Cone& cone = of.cones[static_cast<std::size_t>(c)];
+            C.block<3, 6>(3 * c, 6 * cone.i) = cone.C_i;
+            if (cone.j >= 0) C.block<3, 6>(3 * c, 6 * cone.j) = cone.C_j;
+        }
+        for (std::size_t b = 0; b < of.mass.m.size(); ++b) {
+            const auto k = 6 * static_cast<Eigen::Index>(b);
+            by_mass.middleCols<3>(k) = C.middleCols<3>(k) / of.mass.m[b];
+            by_mass.middleCols<3>(k + 3) = C.middleCols<3>(k + 3) * of.mass.J_bar[b].inverse();
+        }
+        W = by_mass * C.transpose();
+        r = C * of.v;
+    }
+};
 
 /// The largest violations of the equations of the cone problem, in m/s
 struct Violations {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Reader of the contacts of a model file. An element of "contacts" becomes a ContactForce or, if "normal" is
-/// of type "constraint", an EvolvingContact.
+/// Reader of the contacts of a model file. An element of "contacts" becomes a ContactForce or ManifoldForce
+/// or, if "normal" is of type "constraint", an EvolvingContact, or if it is of type "dvi", RigidContacts.
 ///
 ///     {"name": "ball-floor", "body_i": "ball", "body_j": "ground",
 ///      "surface_i": {"type": "sphere", "radius": 0.2}, "surface_j": {"type": "plane"},
@@ -17,6 +17,7 @@
 ///
 /// A key whose default depends on other keys enters the canonical text only if it is given.
 
+#include "contact/compliant/contact_force.hpp"
 #include "contact/compliant/contact_group.hpp"
 #include "contact/contact_list.hpp"
 #include "contact/contact_types.hpp"
@@ -437,15 +438,13 @@ bool add_rigid(ObjectReader& o, ObjectReader normal, const ContactPair& pair, co
     return pair.group != nullptr;
 }
 
-/// Refuses surfaces that touch at several points for laws with one contact point.
-void check_single_point(const ObjectReader& o, std::string_view key, const Shape& shape,
-                        const std::string& type)
+/// Refuses surfaces that touch at several points for a constraint, which has one contact point.
+void check_single_point(const ObjectReader& o, std::string_view key, const Shape& shape)
 {
     if (dynamic_cast<const Polytope*>(shape.surface.get()) != nullptr)
         o.fail(key, "a " + shape.surface->name() +
-                        " touches at several points, which need \"normal\": {\"type\": "
-                        "\"dvi\"}; got " +
-                        type);
+                        " touches at several points, which a constraint does not support; use \"normal\" of "
+                        "type dvi, or a law with a stiffness such as hooke; got constraint");
 }
 
 /// The surfaces of a contact. All pairs of a group share them, so that a mesh is read once.
@@ -490,9 +489,9 @@ bool read_contact(ObjectReader& o, const ContactPair& pair)
     types.insert(types.end(), {"constraint", "dvi"});
     const std::string type = normal.one_of("type", types);
     if (type == "dvi") return add_rigid(o, std::move(normal), pair, i, j);
-    check_single_point(o, pair.surface_i, i, type);
-    check_single_point(o, pair.surface_j, j, type);
     if (type == "constraint") {
+        check_single_point(o, pair.surface_i, i);
+        check_single_point(o, pair.surface_j, j);
         if (pair.group == nullptr) add_evolving(o, std::move(normal), pair, i, j);
         return false;
     }
@@ -504,8 +503,7 @@ bool read_contact(ObjectReader& o, const ContactPair& pair)
         pair.model.load(
             std::make_unique<ContactGroup>(pair.group_name, pair.model, *pair.group, i, j, law, friction));
     else
-        pair.model.load(
-            std::make_unique<ContactForce>(pair.name, pair.model, pair.i, i, pair.j, j, law, friction));
+        pair.model.load(compliant_contact(pair.name, pair.model, pair.i, i, pair.j, j, law, friction));
     return pair.group != nullptr;
 }
 

@@ -77,10 +77,20 @@ ContactPoint CompliantContact::detect(const Motion& bi, const Motion& bj, const 
     }
 }
 
+void CompliantContact::contact_points(const Motion& bi, const Motion& bj, double reach, Manifold& out) const
+{
+    try {
+        detector->detect_all(bi, bj, reach, out);
+    } catch (const lie::NumericalFailure& e) {
+        rethrow(e);
+    }
+}
+
 ContactState CompliantContact::state_without_history(const ContactPoint& contact_point, const Motion& bi,
-                                                     const Motion& bj) const
+                                                     const Motion& bj, double share) const
 {
     ContactState now;
+    now.share = share;
     now.contact_point = contact_point;
     now.N = law->force(normal_input(contact_point, bi, bj));
     now.slip = zero_displacement(contact_point, contact_point.n.unitOrthogonal());
@@ -95,20 +105,27 @@ ContactState CompliantContact::evaluate(const Motion& bi, const Motion& bj,
 }
 
 ContactState CompliantContact::evaluate_at(const ContactPoint& contact_point, const Motion& bi,
-                                           const Motion& bj, const ContactHistory& history) const
+                                           const Motion& bj, const ContactHistory& history,
+                                           double share) const
 {
     const double N = law->force(normal_input(contact_point, bi, bj));
     if (!std::isfinite(N))
         throw lie::NonFinite("contact '" + name + "': the normal force is not finite at an overlap of " +
                              io::shortest(-contact_point.gap) + " m");
-    return contact_state(contact_point, N, bi, bj, history);
+    ContactState now = contact_state(contact_point, N, bi, bj, history);
+    now.share = share;
+    return now;
+}
+
+double CompliantContact::nearly_touching() const
+{
+    return contact_tolerance * (std::isfinite(smaller_size) ? smaller_size : 1);
 }
 
 bool CompliantContact::is_near_contact(const Motion& bi, const Motion& bj,
                                        const ContactHistory& history) const
 {
-    return detect(bi, bj, history).gap <=
-           contact_tolerance * (std::isfinite(smaller_size) ? smaller_size : 1);
+    return detect(bi, bj, history).gap <= nearly_touching();
 }
 
 ContactState CompliantContact::state_at_largest_compression(const Motion& bi, const Motion& bj,
@@ -188,7 +205,7 @@ NormalSupport CompliantContact::normal_support(const ContactState& now, const Mo
                                                const Motion& bj) const
 {
     const NormalInput p = normal_input(now.contact_point, bi, bj);
-    return {.K = law->stiffness(p), .D = p.overlap > 0 ? law->damping(p) : 0};
+    return {.K = now.share * law->stiffness(p), .D = p.overlap > 0 ? now.share * law->damping(p) : 0};
 }
 
 double CompliantContact::stable_step(const ContactState& now, const Motion& bi, const Motion& bj,

@@ -28,11 +28,11 @@ public:
     ContactState evaluate(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
     /// The same for a contact point that is known for these poses
     ContactState evaluate_at(const ContactPoint& contact_point, const Motion& bi, const Motion& bj,
-                             const ContactHistory& history) const;
+                             const ContactHistory& history, double share = 1) const;
 
     /// The same without a sliding displacement: for the stability limit
-    ContactState state_without_history(const ContactPoint& contact_point, const Motion& bi,
-                                       const Motion& bj) const;
+    ContactState state_without_history(const ContactPoint& contact_point, const Motion& bi, const Motion& bj,
+                                       double share = 1) const;
 
     /// The reason why a run cannot start at these poses, or an empty text if it can. The reasons are: the
     /// contact point is not unique; one surface does not fit into the other; a law needs a positive curvature
@@ -70,16 +70,19 @@ public:
     {
         return detect(bi, bj, history);
     }
+    /// Detector::detect_all() with the name of the contact in an error
+    void contact_points(const Motion& bi, const Motion& bj, double reach, Manifold& out) const;
     bool has_cheap_detector() const { return detector->is_cheap(); }  ///< see Detector::is_cheap()
     double smaller_of_sizes() const { return smaller_size; }          ///< of the two surfaces [m]
 
+    double nearly_touching() const;  ///< the largest gap of is_near_contact() [m]
     /// Whether the gap is at most 1e-6 times the smaller size of the surfaces
     bool is_near_contact(const Motion& bi, const Motion& bj, const ContactHistory& history) const;
 
     /// Elastic energy of the normal law [J]
     double energy(const ContactState& now, const Motion& bi, const Motion& bj) const
     {
-        return law->energy(normal_input(now.contact_point, bi, bj));
+        return now.share * law->energy(normal_input(now.contact_point, bi, bj));
     }
 
     const std::shared_ptr<const NormalLaw> law;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact_force.hpp"
 
+#include "contact/compliant/missed_contact.hpp"
 #include "contact/derivative_check.hpp"
-#include "contact/detection/passage.hpp"
 #include "contact/evolving/contact.hpp"
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
-#include "io/error.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 namespace hilda::contact {
 
@@ -132,29 +130,11 @@ bool ContactForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation 
 
 void ContactForce::check_step(const lie::State& before, const lie::State& after) const
 {
-    constexpr double short_motion = 0.1;  // relative to the smaller size: contact cannot be missed
-    constexpr double deeper =
-        2;  // an overlap within the step relative to that at its end: the bodies separate
     if (!is_active(before) || is_touching(before)) return;
-    const Motion &i_begin = motion(before, i), &i_end = motion(after, i), &j_begin = motion(before, j),
-                 &j_end = motion(after, j);
-    const ContactPoint at = node_point(before);
-    const double h = after.t - before.t, size = contact.smaller_of_sizes();
-    const Passage passage(i_begin, i_end, j_begin, j_end, h, (at.C_i - i_begin.r).norm(),
-                          (at.C_j - j_begin.r).norm());
-    if (!(passage.length() > short_motion * size) || at.gap > passage.length()) return;
-    const ContactHistory history = saved_history(before);
-    const auto gap = [&](const Motion& bi, const Motion& bj) { return contact.gap(bi, bj, history); };
-    const double gap_end = gap(i_end, j_end);
-    if (at.gap + gap_end > passage.length()) return;
-    const double s = passage.first_overlap(at.gap, size, gap);
-    if (!(s < 1) || (gap_end < 0 && passage.deepest(s, gap) > deeper * gap_end)) return;
-    std::ostringstream what;
-    what.precision(2);
-    what << label() << ": the bodies pass through each other between t = " << io::shortest(before.t)
-         << " s and " << io::shortest(after.t) << " s, with no node at the compression; use a step below "
-         << h * short_motion * size / passage.length() << " s";
-    throw lie::NumericalFailure("contact_missed", what.str());
+    check_for_missed_contact(
+        contact, label(),
+        {motion(before, i), motion(after, i), motion(before, j), motion(after, j), before.t, after.t},
+        node_point(before), saved_history(before));
 }
 
 double ContactForce::overlap(const lie::State& x) const

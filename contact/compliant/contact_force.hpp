@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "contact/compliant/compliant_force.hpp"
 #include "contact/compliant/contact.hpp"
 #include "contact/detection/other_points.hpp"
 #include "contact/friction/tracked_force.hpp"
@@ -12,7 +13,7 @@ namespace hilda::contact {
 
 /// Applies N n and the friction loads to body i at C and the opposite to body j. N is the force of a normal
 /// law.
-class ContactForce final : public TrackedForce {
+class ContactForce final : public TrackedForce, public CompliantForce {
 public:
     /// A contact between two bodies of the model, of which one may be dae::ground. InvalidInput for a pair of
     /// surfaces that never has a single contact point.
@@ -34,10 +35,8 @@ public:
     void check_step(const lie::State& before, const lie::State& after) const override;
     /// Of the normal law as well, at the largest compression expected
     void check_derivatives(const lie::State& x, dae::DerivativeFindings& out) const override;
-    /// Overlap at the last accepted node [m]; 0 while the surfaces are apart
-    double overlap(const lie::State& x) const;
-    /// CompliantContact::relative_overlap() at the last accepted node
-    double relative_overlap(const lie::State& x) const;
+    double overlap(const lie::State& x) const override;
+    double relative_overlap(const lie::State& x) const override;
 
     /// Makes this force the fallback of constraint c: it is active only while c is in the fallback mode.
     void set_fallback_of(const dae::Constraint& c) { constraint = &c; }

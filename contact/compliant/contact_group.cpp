@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/compliant/contact_group.hpp"
 
+#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/manifold_force.hpp"
 #include "contact/detection/near_pairs.hpp"
 #include "dae/model.hpp"
 
 #include <algorithm>
 
 namespace hilda::contact {
+
+std::unique_ptr<dae::Force> compliant_contact(const std::string& name, const dae::Model& model, int i,
+                                              const Shape& shape_i, int j, const Shape& shape_j,
+                                              std::shared_ptr<const NormalLaw> law,
+                                              std::shared_ptr<const FrictionModel> friction)
+{
+    if (ManifoldForce::has_several_points(shape_i, shape_j))
+        return std::make_unique<ManifoldForce>(name, model, i, shape_i, j, shape_j, std::move(law),
+                                               std::move(friction));
+    return std::make_unique<ContactForce>(name, model, i, shape_i, j, shape_j, std::move(law),
+                                          std::move(friction));
+}
 
 ContactGroup::ContactGroup(std::string name, const dae::Model& model, ContactPairs pairs, Shape shape_i,
                            Shape shape_j, std::shared_ptr<const NormalLaw> law,
@@ -31,8 +45,8 @@ std::array<int, 2> ContactGroup::bodies(int number) const
 std::unique_ptr<dae::Force> ContactGroup::force(int number) const
 {
     const auto [i, j] = of.pair(number);
-    return std::make_unique<ContactForce>(of.name_of_pair(model, name, i, j), model, i, shape_i, j, shape_j,
-                                          law, friction);
+    return compliant_contact(of.name_of_pair(model, name, i, j), model, i, shape_i, j, shape_j, law,
+                             friction);
 }
 
 double ContactGroup::reach(int body) const

@@ -3,21 +3,29 @@
 
 #pragma once
 
-#include "contact/compliant/contact_force.hpp"
 #include "contact/contact_pairs.hpp"
+#include "contact/friction/friction.hpp"
+#include "contact/normal/normal_law.hpp"
 #include "dae/forces/force_group.hpp"
 
 #include <atomic>
 
 namespace hilda::contact {
 
-/// The pairs of bodies of an element of "contacts" as a dae::ForceGroup: a ContactForce exists for each pair
-/// whose bounding spheres are close to each other. A plane of the ground has no bounding sphere; its pairs
-/// are near if the bounding sphere of the other body is close to the plane.
+/// The compliant contact of two bodies: a ManifoldForce of surfaces with several contact points, otherwise a
+/// ContactForce. InvalidInput as their constructors.
+std::unique_ptr<dae::Force> compliant_contact(const std::string& name, const dae::Model& model, int i,
+                                              const Shape& shape_i, int j, const Shape& shape_j,
+                                              std::shared_ptr<const NormalLaw> law,
+                                              std::shared_ptr<const FrictionModel> friction);
+
+/// The pairs of bodies of an element of "contacts" as a dae::ForceGroup: a compliant_contact() exists for
+/// each pair whose bounding spheres are close to each other. A plane of the ground has no bounding sphere;
+/// its pairs are near if the bounding sphere of the other body is close to the plane.
 class ContactGroup final : public dae::ForceGroup {
 public:
     /// shape_i, shape_j: of the first and the second body of each pair. InvalidInput for a pair of surfaces
-    /// that never has a single contact point.
+    /// without a detector.
     ContactGroup(std::string name, const dae::Model& model, ContactPairs pairs, Shape shape_i, Shape shape_j,
                  std::shared_ptr<const NormalLaw> law, std::shared_ptr<const FrictionModel> friction);
 

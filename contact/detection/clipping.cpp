@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/detection/clipping.hpp"
 
+#include "contact/surfaces/area_shares.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace hilda::contact {
+
+namespace {
+
+constexpr double direction_of_first = 0.1;  // [rad], so that regular polygons have no ties
+
+}  // namespace
 
 void ClippedFace::set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident,
                       double length)
@@ -15,7 +23,7 @@ void ClippedFace::set(const PlacedCore& reference, int f, const Vec3& n, const P
     corner.clear();
     if (body.face.empty()) {
         for (std::size_t k = 0; k < body.vertex.size(); ++k)
-            corner.push_back({incident.vertex[k], 0, static_cast<int>(k), 0});
+            corner.push_back({incident.vertex[k], 0, static_cast<int>(k), 0, 0});
     } else {
         std::size_t opposite = 0;
         double least = 2;
@@ -25,7 +33,8 @@ void ClippedFace::set(const PlacedCore& reference, int f, const Vec3& n, const P
         const Polytope::Face& of = body.face[opposite];
         const std::size_t m = of.vertex.size();
         for (std::size_t k = 0; k < m; ++k)
-            corner.push_back({incident.at(of.vertex[k]), of.edge[k], of.vertex[k], of.edge[(k + m - 1) % m]});
+            corner.push_back(
+                {incident.at(of.vertex[k]), of.edge[k], of.vertex[k], of.edge[(k + m - 1) % m], 0});
     }
     for (std::size_t s = 0; s < face.vertex.size() && !corner.empty(); ++s) {
         const Vec3 &p = reference.at(face.vertex[s]),
@@ -33,6 +42,10 @@ void ClippedFace::set(const PlacedCore& reference, int f, const Vec3& n, const P
         const Vec3 outward = (q - p).cross(n).normalized();
         clip(outward, outward.dot(p), first_side + static_cast<int>(s), length);
     }
+    outline.clear();
+    for (const Corner& c : corner) outline.push_back(c.x);
+    area_shares(outline, share);
+    for (std::size_t k = 0; k < corner.size(); ++k) corner[k].share = share[k];
 }
 
 /// Removes what is outside of a side. Corners near the side are kept as they are, without a second point at
@@ -51,14 +64,14 @@ void ClippedFace::clip(const Vec3& outward, double limit, int side, double lengt
         if (!leaves && !enters) continue;
         const Vec3 x = c.x + h / (h - h_next) * (next.x - c.x);
         if (!is_polygon || enters)
-            other.push_back({x, c.side, -1, side});
+            other.push_back({x, c.side, -1, side, 0});
         else
-            other.push_back({x, side, -1, c.side});
+            other.push_back({x, side, -1, c.side, 0});
     }
     corner.swap(other);
 }
 
-void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most)
+void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most, bool mean_places)
 {
     std::erase_if(corner, [&](const Corner& c) { return !(n.dot(c.x - p) < reach); });
     if (corner.size() <= static_cast<std::size_t>(most)) return;
@@ -70,11 +83,24 @@ void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most)
         other.push_back(corner[best]);
         corner.erase(corner.begin() + static_cast<std::ptrdiff_t>(best));
     };
-    take_largest([&](const Vec3& x) { return -n.dot(x); });
+    // The lowest corner changes with each small motion, so that mean places would change with it.
+    if (!mean_places) take_largest([&](const Vec3& x) { return -n.dot(x); });
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
-    for (int d = 1; d < most; ++d) {
-        const double angle = 2 * std::numbers::pi * d / (most - 1);
+    while (other.size() < static_cast<std::size_t>(most)) {
+        const double angle =
+            direction_of_first + 2 * std::numbers::pi * static_cast<double>(other.size()) / most;
         take_largest([&](const Vec3& x) { return std::cos(angle) * u.dot(x) + std::sin(angle) * w.dot(x); });
+    }
+    // the kept corners are found by their places, which change below
+    outline.clear();
+    for (const Corner& c : other) outline.push_back(c.x);
+    for (const Corner& left : corner) {
+        std::size_t nearest = 0;
+        for (std::size_t k = 1; k < outline.size(); ++k)
+            if ((outline[k] - left.x).squaredNorm() < (outline[nearest] - left.x).squaredNorm()) nearest = k;
+        Corner& c = other[nearest];
+        c.share += left.share;
+        if (mean_places && c.share > 0) c.x += left.share / c.share * (left.x - c.x);
     }
     corner.swap(other);
 }

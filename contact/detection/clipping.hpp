@@ -31,6 +31,7 @@ public:
         int side;         ///< the side that begins here: an edge of the incident body, or first_side + number
         int vertex;       ///< of the incident body, -1 if it is none
         int side_before;  ///< the side that ends here
+        double share;     ///< see area_shares(), of the clipped polygon
     };
     std::vector<Corner> corner;
 
@@ -38,8 +39,9 @@ public:
     /// body without faces. n is the normal of f. Corners within `length` [m] of a side count as inside.
     void set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident, double length);
     /// Removes the corners with height n · (x - p) >= reach over the point p. Of more than `most` the lowest
-    /// one remains and those that are farthest in most - 1 directions.
-    void keep(const Vec3& n, const Vec3& p, double reach, int most);
+    /// one remains and those that are farthest in most - 1 directions; the nearest of them take over the
+    /// shares of the others. See Manifold::mean_places.
+    void keep(const Vec3& n, const Vec3& p, double reach, int most, bool mean_places);
     /// The parts of a corner; a is the reference body
     TouchingParts parts(const Corner& c, const Polytope::Face& reference) const;
 
@@ -49,6 +51,8 @@ private:
     void clip(const Vec3& outward, double limit, int side, double length);
 
     std::vector<Corner> other;
+    std::vector<Vec3> outline;
+    std::vector<double> share;
 };
 
 }  // namespace hilda::contact

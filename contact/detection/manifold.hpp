@@ -16,12 +16,20 @@ struct ManifoldPoint {
     /// The parts of the bodies that touch, such as the number of a vertex. The same parts have the same
     /// number in all poses. Ascending in a manifold
     std::uint32_t feature = 0;
+    /// The part of the contact that the point stands for, in [0, 1]: the part of the common area of two faces
+    /// that is near the point. Resultants of loads with these shares act at the centroid of the area.
+    double share = 1;
 };
 
 /// Up to eight contact points
 class Manifold {
 public:
     static constexpr int most = 8;
+
+    /// Detector::detect_all() may replace many corners of a face by eight points. Each stands for the corners
+    /// near it: at a corner that is farthest in some direction, or, if this is true, at the mean place of
+    /// these corners, weighted by their shares. Loads then have the same resultant as those of all corners.
+    bool mean_places = false;
 
     void clear() { count = 0; }
     bool empty() const { return count == 0; }

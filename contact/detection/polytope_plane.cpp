@@ -4,6 +4,7 @@
 #include "contact/surfaces/polytope.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,8 @@ namespace {
 ///     g = n · (v - o) - radius,   C_i = v - radius n
 ///
 /// The feature is the number of the vertex. Of more than eight vertices within reach the deepest one and
-/// those that are farthest in seven directions of the plane count.
+/// those that are farthest in seven directions of the plane count; the nearest of them take over the shares
+/// of the others. See Manifold::mean_places.
 class PolytopePlane final : public Detector {
 public:
     PolytopePlane(const Shape& i, const Polytope& body, const Shape& j)
@@ -26,7 +28,7 @@ public:
     ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
         const Placed at(*this, bi, bj);
-        return at.contact_point(body.farthest_vertex(-at.n_i));
+        return at.contact_point(at.vertex(body.farthest_vertex(-at.n_i)));
     }
 
     void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const override
@@ -41,25 +43,44 @@ public:
                 if (at.gap(k) < reach) add(at, k, out);
             return;
         }
+        const auto is_in = [&](int k) {
+            return std::any_of(out.begin(), out.end(), [&](const ManifoldPoint& p) {
+                return p.feature == static_cast<std::uint32_t>(k);
+            });
+        };
         const auto add_largest = [&](const auto& measure) {
             int best = -1;
-            for (int k = 0; k < vertices; ++k) {
-                const auto is_k = [&](const ManifoldPoint& p) {
-                    return p.feature == static_cast<std::uint32_t>(k);
-                };
-                if (at.gap(k) < reach && std::none_of(out.begin(), out.end(), is_k) &&
-                    (best < 0 || measure(k) > measure(best)))
-                    best = k;
-            }
+            for (int k = 0; k < vertices; ++k)
+                if (at.gap(k) < reach && !is_in(k) && (best < 0 || measure(k) > measure(best))) best = k;
             add(at, best, out);
         };
-        add_largest([&](int k) { return -at.gap(k); });
+        // The deepest vertex changes with each small motion, so that mean places would change with it.
+        if (!out.mean_places) add_largest([&](int k) { return -at.gap(k); });
         const Vec3 x = at.n_i.unitOrthogonal(), y = at.n_i.cross(x);
-        for (int d = 1; d < Manifold::most; ++d) {
-            const double angle = 2 * std::numbers::pi * d / (Manifold::most - 1);
+        while (out.size() < Manifold::most) {
+            constexpr double first = 0.1;  // [rad], so that regular polygons have no ties
+            const double angle = first + 2 * std::numbers::pi * out.size() / Manifold::most;
             const Vec3 u = std::cos(angle) * x + std::sin(angle) * y;
-            add_largest([&](int k) { return u.dot(body.vertex[static_cast<std::size_t>(k)]); });
+            add_largest([&](int k) { return u.dot(at.vertex(k)); });
         }
+        std::array<Vec3, Manifold::most> place;
+        std::transform(out.begin(), out.end(), place.begin(),
+                       [&](const ManifoldPoint& p) { return at.vertex(static_cast<int>(p.feature)); });
+        for (int k = 0; k < vertices; ++k) {
+            if (!(at.gap(k) < reach) || is_in(k)) continue;
+            ManifoldPoint* nearest = out.begin();
+            for (ManifoldPoint& p : out)
+                if ((body.vertex[p.feature] - at.vertex(k)).squaredNorm() <
+                    (body.vertex[nearest->feature] - at.vertex(k)).squaredNorm())
+                    nearest = &p;
+            const double share = at.share(k);
+            nearest->share += share;
+            Vec3& of = place[static_cast<std::size_t>(nearest - out.begin())];
+            if (out.mean_places && nearest->share > 0) of += share / nearest->share * (at.vertex(k) - of);
+        }
+        if (out.mean_places)
+            for (ManifoldPoint& p : out)
+                p.at = at.contact_point(place[static_cast<std::size_t>(&p - out.begin())]);
         out.sort();
     }
 
@@ -74,12 +95,13 @@ private:
             : body(of.body), shape(of.i, bi), n(bj.A * of.n_bar_j), n_i(shape.axes.transpose() * n),
               height(n.dot(shape.origin - bj.r - bj.A * of.o_bar_j) - body.radius)
         {}
-        double gap(int k) const { return n_i.dot(body.vertex[static_cast<std::size_t>(k)]) + height; }
-        ContactPoint contact_point(int k) const
+        const Vec3& vertex(int k) const { return body.vertex[static_cast<std::size_t>(k)]; }
+        double gap(int k) const { return n_i.dot(vertex(k)) + height; }
+        double share(int k) const { return body.share_of_vertex(k, -n_i); }
+        ContactPoint contact_point(const Vec3& v) const
         {
-            const Vec3 C_i =
-                shape.origin + shape.axes * body.vertex[static_cast<std::size_t>(k)] - body.radius * n;
-            const double g = gap(k);
+            const Vec3 C_i = shape.origin + shape.axes * v - body.radius * n;
+            const double g = n_i.dot(v) + height;
             const Mat3 K =
                 body.radius > 0 ? Mat3((Mat3::Identity() - n * n.transpose()) / body.radius) : Mat3::Zero();
             return {.C_i = C_i, .C_j = C_i - g * n, .n = n, .gap = g, .K_i = K, .K_j = Mat3::Zero()};
@@ -88,7 +110,9 @@ private:
 
     static void add(const Placed& at, int k, Manifold& out)
     {
-        out.push_back({.at = at.contact_point(k), .feature = static_cast<std::uint32_t>(k)});
+        out.push_back({.at = at.contact_point(at.vertex(k)),
+                       .feature = static_cast<std::uint32_t>(k),
+                       .share = at.share(k)});
     }
 
     const Shape i;

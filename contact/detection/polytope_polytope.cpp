@@ -7,6 +7,11 @@
 ///   over the best face: an edge that lies in a face touches at both ends.
 /// - Bodies whose nearest parts are others, such as two vertices: the closest points of the cores, of each
 ///   vertex and of each two edges within reach.
+///
+/// Shares: the corners of a clipped face have those of its area. The points of two edges, and a corner below
+/// the clipped face, have the mean share of the vertices that they belong to, as a corner that becomes such a
+/// point. Corners of a face keep their shares beside it only if the normals are close to each other.
+/// Closest points have equal shares, which fade to zero over `faded` for a larger gap than the smallest one.
 #include "contact/detection/clipping.hpp"
 #include "contact/detection/detectors.hpp"
 #include "contact/surfaces/sphere.hpp"
@@ -19,6 +24,8 @@ namespace hilda::contact {
 namespace {
 
 constexpr double negligible = 1e-9;  // lengths below this fraction of the smaller size are zero
+constexpr double faded = 0.1;        // relative to the smaller size
+constexpr double rest = -1;          // share of a point that set_rest() sets
 
 /// Memory of a search
 struct Scratch {
@@ -54,11 +61,15 @@ public:
         if (of_faces.kind != SeparatingAxis::none) add_face(of_faces, axis.separation - length);
         double nearest = std::numeric_limits<double>::infinity();
         for (const ManifoldPoint& p : out) nearest = std::min(nearest, p.at.gap + radii);
-        if (nearest <= axis.separation + length) return;
-        if (axis.kind == SeparatingAxis::none || axis.separation >= -length)
+        if (nearest <= axis.separation + length) {
+            set_rest();
+        } else if (axis.kind == SeparatingAxis::none || axis.separation >= -length) {
             add_closest();
-        else
+            set_faded_shares();
+        } else {
             add_deepest(of_faces);
+            set_rest();
+        }
     }
 
 private:
@@ -70,20 +81,54 @@ private:
         const Polytope::Face& face = reference.core.face[static_cast<std::size_t>(axis.first)];
         const Vec3& p = reference.at(face.vertex[0]);
         memory.clipped.set(reference, axis.first, n, incident, length);
-        memory.clipped.keep(n, p, reach + radii, Manifold::most);
+        memory.clipped.keep(n, p, reach + radii, Manifold::most, out.mean_places);
         for (const ClippedFace::Corner& c : memory.clipped.corner) {
             const double height = n.dot(c.x - p);
-            if (height >= lowest) add_over_face(of_a, c.x, n, height, memory.clipped.parts(c, face));
+            if (height >= lowest) add_over_face(of_a, c.x, n, height, memory.clipped.parts(c, face), c.share);
         }
     }
 
-    void add_over_face(bool of_a, const Vec3& x, const Vec3& n, double height, const TouchingParts& parts)
+    void add_over_face(bool of_a, const Vec3& x, const Vec3& n, double height, const TouchingParts& parts,
+                       double share)
     {
         const Vec3 below = x - height * n;
         if (of_a)
-            add(below, x, n, height, parts);
+            add(below, x, n, height, parts, share);
         else
-            add(x, below, -n, height, parts.exchanged());
+            add(x, below, -n, height, parts.exchanged(), share);
+    }
+
+    /// Sets the share of the point of two edges, or of the deepest corner. Corners over a face with another
+    /// normal than that of this point lose theirs, and the point has none beside a corner as deep as it is.
+    void set_rest()
+    {
+        const auto is_single = [](const ManifoldPoint& p) { return p.share == rest; };
+        const ManifoldPoint* const single = std::find_if(out.begin(), out.end(), is_single);
+        if (single == out.end()) return;
+        double left = share_of_rest;
+        for (ManifoldPoint& p : out)
+            if (!is_single(p)) {
+                p.share *= ramp(p.at.n.dot(single->at.n), 0.9, 0.98);
+                if (p.at.gap < 0 && single->at.gap < 0)
+                    left -= p.share * ramp(p.at.gap / single->at.gap, 0.9, 1);
+            }
+        const auto count = static_cast<double>(std::count_if(out.begin(), out.end(), is_single));
+        for (ManifoldPoint& p : out)
+            if (is_single(p)) p.share = std::max(0., left) / count;
+    }
+    /// 0 below `low`, 1 above `high`, linear between them
+    static double ramp(double x, double low, double high)
+    {
+        return std::clamp((x - low) / (high - low), 0., 1.);
+    }
+
+    void set_faded_shares()
+    {
+        double nearest = std::numeric_limits<double>::infinity(), sum = 0;
+        for (const ManifoldPoint& p : out) nearest = std::min(nearest, p.at.gap);
+        const double over = faded / negligible * length;
+        for (ManifoldPoint& p : out) sum += p.share = std::max(0., 1 - (p.at.gap - nearest) / over);
+        for (ManifoldPoint& p : out) p.share /= sum;
     }
 
     /// The vertex of the other body that is deepest behind the face of the axis
@@ -94,7 +139,8 @@ private:
         const Vec3 n = of_a ? axis.n : Vec3(-axis.n);
         const int deepest = incident.core.farthest_vertex(-(incident.R.transpose() * n));
         add_over_face(of_a, incident.at(deepest), n, axis.separation,
-                      {TouchingParts::any, static_cast<std::uint32_t>(deepest)});
+                      {TouchingParts::any, static_cast<std::uint32_t>(deepest)}, rest);
+        share_of_rest = incident.core.share_of_vertex(deepest, -(incident.R.transpose() * n));
     }
 
     /// The points of the two edges of the axis that are closest to each other
@@ -107,7 +153,11 @@ private:
         const bool on_both = c.s >= 0 && c.s <= 1 && c.t >= 0 && c.t <= 1;
         if (!on_both && axis.separation > 0) return;  // other parts are closer
         add(A.at(e.a) + std::clamp(c.s, 0., 1.) * u, B.at(g.a) + std::clamp(c.t, 0., 1.) * w, axis.n,
-            axis.separation, TouchingParts::edges(axis.first, axis.second));
+            axis.separation, TouchingParts::edges(axis.first, axis.second), rest);
+        const Vec3 n_a = A.R.transpose() * axis.n, n_b = -(B.R.transpose() * axis.n);
+        share_of_rest = (A.core.share_of_vertex(e.a, n_a) + A.core.share_of_vertex(e.b, n_a) +
+                         B.core.share_of_vertex(g.a, n_b) + B.core.share_of_vertex(g.b, n_b)) /
+                        4;
     }
 
     /// The closest points of two cores that are apart: of each vertex and the other body, and of each two
@@ -147,14 +197,15 @@ private:
             if (!(distance(*c) > 0))
                 throw lie::NumericalFailure("contact_not_converged",
                                             "bodies that overlap so deeply have no unique contact point");
-            add(c->a, c->b, (c->b - c->a) / distance(*c), distance(*c), c->parts);
+            add(c->a, c->b, (c->b - c->a) / distance(*c), distance(*c), c->parts, 0);
         }
     }
 
     /// Adds the contact point of the points x_a and x_b of the cores, which are `separation` apart along n.
     /// If these parts have one, the one with the clearly smaller gap remains. The one with the largest gap is
     /// replaced if there are too many.
-    void add(const Vec3& x_a, const Vec3& x_b, const Vec3& n, double separation, const TouchingParts& parts)
+    void add(const Vec3& x_a, const Vec3& x_b, const Vec3& n, double separation, const TouchingParts& parts,
+             double share)
     {
         if (!(separation - radii < reach)) return;
         const auto global = [&](const Vec3& x) -> Vec3 { return at_b.origin + at_b.axes * x; };
@@ -170,6 +221,7 @@ private:
         p.at.C_i = a_is_j ? C_b : C_a, p.at.C_j = a_is_j ? C_a : C_b;
         p.at.n = a_is_j ? normal : Vec3(-normal);
         p.at.K_i = a_is_j ? K_b : K_a, p.at.K_j = a_is_j ? K_a : K_b;
+        p.share = share;
         p.feature = a_is_j ? parts.b << 16 | parts.a : parts.a << 16 | parts.b;
         const auto is_same = [&](const ManifoldPoint& q) { return q.feature == p.feature; };
         ManifoldPoint* other = std::find_if(out.begin(), out.end(), is_same);
@@ -181,6 +233,7 @@ private:
             other = std::max_element(
                 out.begin(), out.end(),
                 [](const ManifoldPoint& q, const ManifoldPoint& r) { return q.at.gap < r.at.gap; });
+        if (other->feature == p.feature && other->share == rest) other->share = p.share;
         if (p.at.gap < other->at.gap - length) *other = p;
     }
 
@@ -190,6 +243,7 @@ private:
     const PlacedShape& at_b;
     const bool a_is_j;
     const double radii, reach;
+    double share_of_rest = 0;
     Manifold& out;
 };
 

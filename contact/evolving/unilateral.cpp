@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/evolving/unilateral.hpp"
 
-#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/compliant_force.hpp"
 #include "dae/model.hpp"
 #include "lie/bracket.hpp"
 #include "lie/check.hpp"
@@ -423,7 +423,7 @@ std::unique_ptr<lie::Integrator> make_integrator(const dae::Model& model, const 
                         "adaptive steps do not support contacts; use a fixed step", contact);
     };
     for (const auto& f : model.forces())
-        if (dynamic_cast<const ContactForce*>(f.get()) != nullptr) refuse_adaptive(f->label());
+        if (dynamic_cast<const CompliantForce*>(f.get()) != nullptr) refuse_adaptive(f->label());
     for (const auto& group : model.near_forces().all_groups()) refuse_adaptive(group->example().label());
     for (const auto& c : model.general_constraints())
         if (c->algebraic_variables() > 0) refuse_adaptive("contact '" + c->name + "'");

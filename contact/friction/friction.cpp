@@ -22,6 +22,29 @@ double reduced(double a, double b)
     return a * b / (a + b);
 }
 
+Wrench Wrench::operator*(double factor) const
+{
+    if (factor == 1) return *this;
+    return {.F = F * factor,
+            .T_i = T_i * factor,
+            .T_j = T_j * factor,
+            .F_E = F_E * factor,
+            .T_roll_E = T_roll_E * factor,
+            .T_roll_E_j = T_roll_E_j * factor,
+            .T_spin_E = T_spin_E * factor,
+            .T_spin = T_spin * factor};
+}
+
+Springs Springs::operator*(double factor) const
+{
+    return {.K_slide = K_slide * factor,
+            .D_slide = D_slide * factor,
+            .K_roll = K_roll * factor,
+            .D_roll = D_roll * factor,
+            .K_spin = K_spin * factor,
+            .D_spin = D_spin * factor};
+}
+
 Rates mean_rates(const SlidingDisplacement& slip, double h)
 {
     const double per_step = 1 / h;
@@ -50,7 +73,11 @@ Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, 
     const Vec3 edge = contact_point.edge_i + contact_point.edge_j;  // at most one is not zero
     const Vec3 u = slip.u, w = n.cross(u), Ku = K * u, Kw = K * w;
     const double a = u.dot(Ku), b = u.dot(Kw), d = w.dot(Kw), det = a * d - b * b;
-    if (!(det > singular * (a * a + 2 * b * b + d * d))) return r;
+    if (!(det > singular * (a * a + 2 * b * b + d * d))) {
+        // Two flat parts: the normal belongs to a face of one of them, which is not known here.
+        if (K.isZero(0)) r.s = v + 0.5 * contact_point.gap * (omega_i + omega_j).cross(n);
+        return r;
+    }
     const auto solve = [&](const Vec3& q) -> Vec3 {
         if (edge.squaredNorm() > 0) return edge * (edge.dot(q) / edge.dot(K * edge));
         const double x = u.dot(q), y = w.dot(q);

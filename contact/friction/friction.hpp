@@ -39,6 +39,9 @@ struct ContactState {
     ContactPoint contact_point;
     SlidingDisplacement slip;  ///< displacement since the previous instant
     double N = 0;              ///< normal force [N]; zero or negative if there is no contact
+    /// The part of a contact that this point stands for, see ManifoldPoint::share: its loads, stiffness and
+    /// energy are those of a whole contact with the normal force N, times the share.
+    double share = 1;
     /// Fictitious mass of the pair [kg] and its moments of inertia about the tangents and about the normal
     /// [kg m²], for the damping coefficients                                              Eqs. 4.4, 4.10
     double m = 0, I_roll = 0, I_spin = 0;
@@ -65,7 +68,8 @@ Rates mean_rates(const SlidingDisplacement& slip, double h);
 ///
 ///     (K_i + K_j) ṗ_i = (ω_i - ω_j) × n + K_j ṡ,   ṗ_j = ṗ_i - ṡ
 ///
-/// p_i and p_j are zero if K_i + K_j is singular. Only n and u of `slip` are used.
+/// p_i and p_j are zero if K_i + K_j is singular. For K_i = K_j = 0 the normal has the mean of both
+/// rotations. Only n and u of `slip` are used.
 Rates rates(const ContactPoint& contact_point, const SlidingDisplacement& slip, const Motion& bi,
             const Motion& bj);
 
@@ -77,6 +81,8 @@ struct Wrench {
     Vec3 F_E = Vec3::Zero(), T_roll_E = Vec3::Zero(), T_roll_E_j = Vec3::Zero();
     double T_spin_E = 0;
     double T_spin = 0;  ///< spinning torque on i about n [N m]
+
+    Wrench operator*(double factor) const;
 };
 
 /// Stiffness and damping of a friction law in the stick regime, for the stability limit of explicit schemes
@@ -84,6 +90,8 @@ struct Springs {
     double K_slide = 0, D_slide = 0;  ///< [N/m, N s/m]
     double K_roll = 0, D_roll = 0;    ///< [N m/rad, N m s/rad]
     double K_spin = 0, D_spin = 0;    ///< [N m/rad, N m s/rad]
+
+    Springs operator*(double factor) const;
 };
 
 /// The springs with which a friction law holds two bodies at rest. Their forces have components in (u, w) of
@@ -91,6 +99,8 @@ struct Springs {
 struct StaticSprings {
     struct Spring {
         double K = 0, bound_s = 0, bound_k = 0;  ///< stiffness; bounds of the force in stick and slip
+
+        Spring operator*(double factor) const { return {K * factor, bound_s * factor, bound_k * factor}; }
     };
     Spring slide;  ///< F = K S on i                                                             [N/m, N]
     /// The force y = K_y κ⁻¹ Θ belongs to the torque (lever y) × n on i, with lever = κ⁻¹         [N/m, N],

@@ -91,6 +91,13 @@ void FrictionPair::advance(const ContactState& now, const Motion& bi, const Moti
     history.touching = touching;
 }
 
+StaticSprings FrictionPair::static_springs(const ContactState& now) const
+{
+    StaticSprings all = friction->static_springs(now);
+    for (StaticSprings::Spring* spring : {&all.slide, &all.roll, &all.spin}) *spring = *spring * now.share;
+    return all;
+}
+
 lie::LinearSprings<6> FrictionPair::linear_springs(const ContactState& now, const Springs& springs,
                                                    const NormalSupport& normal, const Motion& bi,
                                                    const Motion& bj, ContactCounts contacts) const
@@ -103,7 +110,7 @@ lie::LinearSprings<6> FrictionPair::linear_springs(const ContactState& now, cons
     linear << u.transpose(), w.transpose(), n.transpose(), Mat3::Zero();
     lie::LinearSprings<6> of;
     of.W.setZero();
-    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, int number) {
+    const auto add = [&](const Inertia& body, const Motion& motion, const Vec3& C, double number) {
         if (!body.moves()) return;
         const Vec3 s = C - motion.r;
         Rows angular = Rows::Zero();
@@ -130,9 +137,9 @@ bool FrictionPair::is_stable(double h, double damping_factor, const ContactState
                              ContactCounts contacts) const
 {
     // An upper limit of the trace of P W: no row of a body is longer than √(1/m + s² j), or √j for a rotation
-    const Springs springs = friction->springs(now);
+    const Springs springs = friction->springs(now) * now.share;
     double translations = 0, rotations = 0;
-    const auto add = [&](const Inertia& body, double j, const Vec3& s, int number) {
+    const auto add = [&](const Inertia& body, double j, const Vec3& s, double number) {
         if (!body.moves()) return;
         translations += number * (1 / body.m + s.squaredNorm() * j);
         rotations += number * j;
@@ -163,7 +170,8 @@ double FrictionPair::elastic_energy(const ContactState& now, const Wrench& load,
 double FrictionPair::stable_step(const ContactState& now, const NormalSupport& normal, const Motion& bi,
                                  const Motion& bj, ContactCounts contacts, double damping_factor) const
 {
-    return linear_springs(now, friction->springs(now), normal, bi, bj, contacts).stable_step(damping_factor);
+    return linear_springs(now, friction->springs(now) * now.share, normal, bi, bj, contacts)
+        .stable_step(damping_factor);
 }
 
 }  // namespace hilda::contact

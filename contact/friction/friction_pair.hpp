@@ -35,9 +35,10 @@ struct NormalSupport {
     bool rigid = false;   ///< the normal direction is a constraint; K and D are not used
 };
 
-/// Numbers of contacts that the two bodies of a contact have, with this one
+/// Numbers of contacts that the two bodies of a contact have, with this one. A contact point with a share
+/// counts its contact 1/share times.
 struct ContactCounts {
-    int of_i = 1, of_j = 1;
+    double of_i = 1, of_j = 1;
 };
 
 /// A pair of surfaces with a friction law. The object is constant; the caller owns the ContactHistory. See
@@ -57,8 +58,10 @@ public:
     /// Friction loads; zero if N is not positive
     Wrench load(const ContactState& now, const Rates& rates, const ContactHistory& history) const
     {
-        return now.N > 0 ? friction->load(now, rates, history.deflections) : Wrench();
+        return now.N > 0 ? friction->load(now, rates, history.deflections) * now.share : Wrench();
     }
+    /// FrictionModel::static_springs() of the share
+    StaticSprings static_springs(const ContactState& now) const;
 
     /// The largest step [s] for which symplectic Euler is stable with the springs and dampers of this
     /// contact, all in the stick regime, for the curvatures and the normal force of `now`. It is the smallest

@@ -35,7 +35,7 @@ int flags_of(const ContactHistory& m)
     return flags;
 }
 
-void set_flags(int flags, ContactHistory& m)
+void restore_flags(int flags, ContactHistory& m)
 {
     int bit = 0;
     const auto next = [&] { return (flags >> bit++ & 1) != 0; };
@@ -71,13 +71,20 @@ Inertia TrackedForce::inertia(const dae::Model& model, int b)
 
 const FrictionModel& TrackedForce::law() const { return *pair().friction; }
 
+int TrackedForce::flags(const lie::State& x) const { return x.discrete_state[first_discrete_state]; }
+
+void TrackedForce::set_flags(int flags, lie::State& x) const
+{
+    x.discrete_state[first_discrete_state] = flags;
+}
+
 int TrackedForce::internal_states() const { return reals<SavedValues>(); }
 
 ContactHistory TrackedForce::saved_history(const lie::State& x) const
 {
     ContactHistory m;
-    set_flags(x.discrete_state[first_discrete_state], m);
-    const auto all = restored<SavedValues>(x.internal_state.data() + first_internal_state);
+    restore_flags(flags(x), m);
+    const auto all = restored<SavedValues>(x.internal_state.data() + first_of_history());
     m.contact_frame = all.contact_frame;
     m.deflections.S = all.S, m.deflections.Theta_i = all.Theta_i, m.deflections.Theta_j = all.Theta_j;
     m.deflections.Psi = all.Psi;
@@ -87,7 +94,7 @@ ContactHistory TrackedForce::saved_history(const lie::State& x) const
 void TrackedForce::save(const Instant& now, lie::State& x) const
 {
     const ContactHistory& m = now.history;
-    x.discrete_state[first_discrete_state] = flags_of(m);
+    set_flags(flags_of(m), x);
     const SlidingDisplacement& s = now.contact_state.slip;
     SavedValues all;
     all.S = m.deflections.S, all.Theta_i = m.deflections.Theta_i, all.Theta_j = m.deflections.Theta_j;
@@ -95,20 +102,24 @@ void TrackedForce::save(const Instant& now, lie::State& x) const
     all.contact_frame = m.contact_frame;
     all.t = x.t;
     if (m.touching) all.p_i = components(s.p_i, s.n, s.u), all.p_j = components(s.p_j, s.n, s.u);
-    contact::save(all, x.internal_state.data() + first_internal_state);
+    contact::save(all, x.internal_state.data() + first_of_history());
 }
 
-TrackedForce::Instant TrackedForce::at(const lie::State& x) const
+ContactState TrackedForce::evaluate(const lie::State& x) const
 {
-    Instant now{.contact_state = {}, .history = saved_history(x)};
     try {
-        now.contact_state = evaluate(x, now.history);
+        return evaluate(x, saved_history(x));
     } catch (const lie::NumericalFailure& e) {
         rethrow(e, x);
     }
+}
+
+TrackedForce::Instant TrackedForce::at(const lie::State& x, const ContactState& contact_state) const
+{
+    Instant now{.contact_state = contact_state, .history = saved_history(x)};
     SlidingDisplacement& s = now.contact_state.slip;
     if (now.contact_state.N > 0 && now.history.touching) {
-        const auto last = restored<SavedValues>(x.internal_state.data() + first_internal_state);
+        const auto last = restored<SavedValues>(x.internal_state.data() + first_of_history());
         const double length = same_pose * (1 + now.contact_state.contact_point.C().norm());
         if (std::abs(x.t - last.t) <= same_pose * (1 + std::abs(x.t)) && s.p_i.norm() < length &&
             s.p_j.norm() < length && std::abs(s.psi) < same_pose) {
@@ -137,12 +148,15 @@ Rates TrackedForce::damper_rates(const Instant& now, const lie::State& x) const
 
 void TrackedForce::add(const lie::State& x, lie::Loads& out) const
 {
-    if (!is_active(x)) return;
-    const Instant now = at(x);
+    if (is_active(x)) add(at(x), x, out);
+}
+
+void TrackedForce::add(const Instant& now, const lie::State& x, lie::Loads& out) const
+{
     const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return;
     const Wrench w = load(now, x);
-    const Vec3 F = applies_normal_force() ? Vec3(m.N * m.contact_point.n + w.F) : w.F,
+    const Vec3 F = applies_normal_force() ? Vec3(m.share * m.N * m.contact_point.n + w.F) : w.F,
                C = m.contact_point.C();
     add_load(i, F, C, w.T_i, x, out);
     add_load(j, -F, C, w.T_j, x, out);
@@ -157,7 +171,7 @@ Wrench TrackedForce::friction(const lie::State& x) const { return is_active(x) ?
 
 double TrackedForce::time_of_history(const lie::State& x) const
 {
-    return restored<SavedValues>(x.internal_state.data() + first_internal_state).t;
+    return restored<SavedValues>(x.internal_state.data() + first_of_history()).t;
 }
 
 void TrackedForce::update_internal_state(lie::State& x) const
@@ -167,11 +181,14 @@ void TrackedForce::update_internal_state(lie::State& x) const
 
 int TrackedForce::static_springs(const lie::State& x, StaticSpring* out) const
 {
-    if (!is_active(x)) return 0;
-    const Instant now = at(x);
+    return is_active(x) ? static_springs(at(x), x, out) : 0;
+}
+
+int TrackedForce::static_springs(const Instant& now, const lie::State& x, StaticSpring* out) const
+{
     const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return 0;
-    const StaticSprings law = this->law().static_springs(m);
+    const StaticSprings law = pair().static_springs(m);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const Rates rate = rates(m.contact_point, m.slip, bi, bj);
     const Vec3 &n = m.slip.n, &u = m.slip.u, w = n.cross(u), C = m.contact_point.C();
@@ -215,11 +232,14 @@ int TrackedForce::static_springs(const lie::State& x, StaticSpring* out) const
 
 void TrackedForce::set_static_forces(lie::State& x, const StaticForce* forces) const
 {
-    if (!is_active(x)) return;
-    Instant now = at(x);
+    if (is_active(x)) set_static_forces(at(x), x, forces);
+}
+
+void TrackedForce::set_static_forces(Instant now, lie::State& x, const StaticForce* forces) const
+{
     const ContactState& m = now.contact_state;
     if (!(m.N > 0)) return;
-    const StaticSprings law = this->law().static_springs(m);
+    const StaticSprings law = pair().static_springs(m);
     Deflections& d = now.history.deflections;
     const auto deflection = [](const StaticSprings::Spring& of, const StaticForce& by) -> Vec2 {
         return of.K > 0 ? Vec2(by.f / of.K) : Vec2(Vec2::Zero());
@@ -248,14 +268,17 @@ void TrackedForce::check_derivatives(const lie::State& x, dae::DerivativeFinding
 bool TrackedForce::is_touching(const lie::State& x) const
 {
     ContactHistory m;
-    set_flags(x.discrete_state[first_discrete_state], m);
+    restore_flags(flags(x), m);
     return m.touching;
 }
 
 double TrackedForce::internal_energy(const lie::State& x) const
 {
-    if (!is_active(x) || !is_touching(x)) return 0;
-    const Instant now = at(x);
+    return is_active(x) && is_touching(x) ? internal_energy(at(x), x) : 0;
+}
+
+double TrackedForce::internal_energy(const Instant& now, const lie::State& x) const
+{
     return pair().elastic_energy(now.contact_state, load(now, x), now.history);
 }
 
@@ -286,7 +309,7 @@ ContactCounts TrackedForce::contacts(const lie::State& x, Counted which, std::sp
                 counted += other->is_counted(x, which);
         }
     const auto of = [&](int b) {
-        return b == dae::ground ? 1 : of_body[static_cast<size_t>(b)] - counted + 1;
+        return b == dae::ground ? 1. : of_body[static_cast<size_t>(b)] - counted + 1.;
     };
     return {of(i), of(j)};
 }

@@ -55,7 +55,7 @@ public:
         /// x is the state at which the history was stored; the history is then not advanced
         bool is_saved = false;
     };
-    Instant at(const lie::State& x) const;
+    Instant at(const lie::State& x) const { return at(x, evaluate(x)); }
     /// Whether the bodies were in contact at the node of the history in x
     bool is_touching(const lie::State& x) const;
     double internal_energy(const lie::State& x) const override;
@@ -70,12 +70,33 @@ public:
 
     const FrictionModel& law() const;  ///< the friction law
 
+    /// Throws e again with the names of the bodies and the time of x appended
+    [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
+    /// Mass and inertia of body b of the model; infinite for the ground
+    static Inertia inertia(const dae::Model& model, int b);
+
     const int i, j;
 
 protected:
     TrackedForce(const std::string& name, const dae::Model& model, int i, int j);
 
     virtual const FrictionPair& pair() const = 0;
+    /// Contact point, normal force and sliding displacement since the saved history, without its name in an
+    /// error
+    ContactState evaluate(const lie::State& x) const;
+    /// at(x) with the result of evaluate()
+    Instant at(const lie::State& x, const ContactState& now) const;
+    // The functions of a Force, with `now` = at(x)
+    void add(const Instant& now, const lie::State& x, lie::Loads& out) const;
+    double internal_energy(const Instant& now, const lie::State& x) const;
+    int static_springs(const Instant& now, const lie::State& x, StaticSpring* out) const;
+    void set_static_forces(Instant now, lie::State& x, const StaticForce* forces) const;
+
+    /// Index of the history in State::internal_state
+    virtual int first_of_history() const { return first_internal_state; }
+    /// The flags of the history in x, 0 before the first contact
+    virtual int flags(const lie::State& x) const;
+    virtual void set_flags(int flags, lie::State& x) const;
     /// Contact point, normal force and sliding displacement since `history`
     virtual ContactState evaluate(const lie::State& x, const ContactHistory& history) const = 0;
     /// Rates for the dampers. Default: the rates at this instant from the velocities of the bodies, see
@@ -91,12 +112,6 @@ protected:
     /// Numbers of contacts of both bodies that count in x, with this one, from those of all bodies
     /// (dae::Model::count_contacts()). The ground counts as a body with one contact.
     ContactCounts contacts(const lie::State& x, Counted which, std::span<const int> of_body) const;
-    /// Throws e again with the names of the bodies and the time of x appended
-    [[noreturn]] void rethrow(const lie::NumericalFailure& e, const lie::State& x) const;
-
-    /// Mass and inertia of body b of the model; infinite for the ground
-    static Inertia inertia(const dae::Model& model, int b);
-
     /// Stores the history of `now` in x
     virtual void save(const Instant& now, lie::State& x) const;
     double time_of_history(const lie::State& x) const;  ///< time t_n of the stored history [s]

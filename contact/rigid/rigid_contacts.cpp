@@ -185,7 +185,7 @@ dae::RigidContacts::Fastest RigidContacts::fastest(const lie::State& x) const
     return of_all;
 }
 
-void RigidContacts::points(const lie::State& x, int number, std::vector<RigidPoint>& out) const
+void RigidContacts::points(const lie::State& x, int number, std::vector<LoadedPoint>& out) const
 {
     out.clear();
     const auto [i, j] = of.pair(number);
@@ -197,7 +197,7 @@ void RigidContacts::points(const lie::State& x, int number, std::vector<RigidPoi
         const auto force =
             std::lower_bound(x.cone_forces.begin(), x.cone_forces.end(), key,
                              [](const lie::ConeForce& f, std::uint64_t k) { return f.key < k; });
-        RigidPoint& point = out.emplace_back();
+        LoadedPoint& point = out.emplace_back();
         point.at = p.at, point.feature = p.feature;
         if (force == x.cone_forces.end() || force->key != key) continue;
         point.N = force->F.dot(p.at.n);

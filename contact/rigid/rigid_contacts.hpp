@@ -5,6 +5,7 @@
 
 #include "contact/contact_pairs.hpp"
 #include "contact/detection/detector.hpp"
+#include "contact/loaded_point.hpp"
 #include "dae/forces/rigid_contacts.hpp"
 
 #include <memory>
@@ -26,15 +27,6 @@ struct RigidLaw {
     void validate() const;  ///< InvalidInput for values outside their range
 };
 
-/// The force of a contact point in the last step, in the state at its end
-struct RigidPoint {
-    ContactPoint at;
-    std::uint32_t feature = 0;
-    double N = 0;           ///< normal force on body i [N]
-    Vec3 F = Vec3::Zero();  ///< friction force on body i [N], global frame
-    bool slips = false;
-};
-
 /// The contacts of one pair of bodies, or of the pairs of a group. Each has the contact points of
 /// Detector::detect_all().
 class RigidContacts final : public dae::RigidContacts {
@@ -51,9 +43,10 @@ public:
     std::string start_error(const lie::State& x) const override;
     Fastest fastest(const lie::State& x) const override;
 
-    /// Sets `out` to the contact points of a pair with the forces of x.cone_forces, and to those within a
+    /// Sets `out` to the contact points of a pair in the state x with the forces of the last step,
+    /// x.cone_forces, and to those within a
     /// hundredth of the smaller size without a force.
-    void points(const lie::State& x, int number, std::vector<RigidPoint>& out) const;
+    void points(const lie::State& x, int number, std::vector<LoadedPoint>& out) const;
     /// The closest points of a pair, see Detector::detect()
     ContactPoint nearest(const lie::State& x, int number) const;
     const ContactPairs& pairs() const { return of; }

@@ -66,7 +66,7 @@ void Scene::check(double h) const
     for (const Pair& p : pair) checked.push_back({p.contact, p.i, p.j, p.history});
     const auto near = neighbors.pairs_near(body);
     for (const auto& p : near) checked.push_back({*p.law, p.i, p.j, p.state.history});
-    std::vector<int> contacts(body.size());
+    std::vector<double> contacts(body.size());
     for (const CheckedContact& p : checked) {
         const Motion &bi = body[p.i], &bj = body[p.j];
         if (const std::string why = p.contact.start_error(bi, bj); !why.empty())
@@ -77,7 +77,7 @@ void Scene::check(double h) const
         const Motion &bi = body[p.i], &bj = body[p.j];
         const double bound =
             p.contact.stable_step(p.contact.state_at_largest_compression(bi, bj, p.history, weight), bi, bj,
-                                  {std::max(1, contacts[p.i]), std::max(1, contacts[p.j])});
+                                  {std::max(1., contacts[p.i]), std::max(1., contacts[p.j])});
         if (h > bound) {
             std::ostringstream what;
             what << "contact '" << p.contact.name << "': the step must not exceed its stability bound of "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/surfaces/polytope.hpp"
 
+#include "contact/surfaces/area_shares.hpp"
 #include "contact/surfaces/convex_hull.hpp"
 #include "contact/surfaces/positive.hpp"
 #include "contact/tessellation.hpp"
@@ -100,7 +101,37 @@ Polytope::Polytope(std::vector<Vec3> points, double r, std::string name, double 
     for (Face& f : face) std::for_each(f.vertex.begin(), f.vertex.end(), renumber);
     for (Edge& e : edge) renumber(e.a), renumber(e.b);
     vertex = std::move(corners);
+    set_shares();
     set_sizes();
+}
+
+void Polytope::set_shares()
+{
+    if (face.empty()) return;
+    faces_at.resize(vertex.size());
+    std::vector<Vec3> outline;
+    std::vector<double> share;
+    for (std::size_t f = 0; f < face.size(); ++f) {
+        outline.clear();
+        for (const int v : face[f].vertex) outline.push_back(vertex[static_cast<std::size_t>(v)]);
+        area_shares(outline, share);
+        for (std::size_t k = 0; k < share.size(); ++k)
+            faces_at[static_cast<std::size_t>(face[f].vertex[k])].push_back({static_cast<int>(f), share[k]});
+    }
+}
+
+double Polytope::share_of_vertex(int v, const Vec3& u) const
+{
+    if (face.empty()) return 1. / static_cast<double>(vertex.size());
+    double sum = 0, of_shares = 0, mean = 0;
+    const std::vector<FaceAtVertex>& around = faces_at[static_cast<std::size_t>(v)];
+    for (const FaceAtVertex& at : around) {
+        const double cosine = std::max(0., face[static_cast<std::size_t>(at.face)].n.dot(u)),
+                     square = cosine * cosine, weight = square * square * square * square;
+        sum += weight, of_shares += weight * at.share;
+        mean += at.share / static_cast<double>(around.size());
+    }
+    return sum > 0 ? of_shares / sum : mean;
 }
 
 void Polytope::set_sizes()

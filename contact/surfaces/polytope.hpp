@@ -58,17 +58,29 @@ public:
 
     /// Number of the vertex of the core that is farthest along u; the lowest of several
     int farthest_vertex(const Vec3& u) const;
+    /// The part of the contact with a plane that a vertex stands for: the mean of its parts of the areas of
+    /// its faces, weighted by the eighth power of n · u, with the direction u of the plane in the frame of
+    /// the body. It is the part of a face that lies on the plane, and it is continuous in u.
+    double share_of_vertex(int v, const Vec3& u) const;
     /// The point of the core closest to a point outside of it
     Vec3 closest_of_core(const Vec3& a) const;
 
     std::vector<Vec3> vertex;  ///< of the core [m]
     std::vector<Face> face;    ///< empty for a segment and a point
     std::vector<Edge> edge;
-    const double radius;  ///< [m]
+
+    /// The part of the area of a face that is near a vertex, see area_shares()
+    struct FaceAtVertex {
+        int face;
+        double share;
+    };
+    std::vector<std::vector<FaceAtVertex>> faces_at;  ///< of each vertex; empty without faces
+    const double radius;                              ///< [m]
 
 private:
     bool is_solid() const { return face.size() > 2; }
     double depth_in_core(const Vec3& a, int& nearest_face) const;
+    void set_shares();
     void set_sizes();
 
     std::string type;

@@ -19,6 +19,10 @@ SHOWN = (
     ("friction", [], "friction-brick.png", "A brick that is thrown on a floor with friction."),
     ("evolving-contact", [], "evolving-contact-planar.png", "A ball in a bowl; the contact points are unknowns of the equations."),
     ("evolving-friction", [], "evolving-friction-forces.png", "The same with friction and rolling resistance, until it rests."),
+    ("snapshots", ["--problem", "examples/models/arch.json", "--integrator", "rA-moreau-1"], "snapshots-arch.png",
+     "Rigid contact: a masonry arch that is too thin collapses with five hinges."),
+    ("snapshots", ["--problem", "examples/models/dominoes.json", "--integrator", "rA-moreau-1", "--steps", "5e-4"],
+     "snapshots-dominoes.png", "Rigid contact: a row of dominoes."),
     ("granular-head-on", [], "granular-head-on.png", "Restitution of a head-on collision of two grains, by integrator and step."),
     ("granular-oblique", [], "granular-oblique.png", "Oblique impact of a grain on a wall, over the angle."),
 )
@@ -35,11 +39,12 @@ TABLE = """## All studies
 """
 
 
-def run(program, work, environment, study, options):
+def run(program, work, environment, study, options, figure):
     """Runs a study. Returns its folder."""
-    folder = work / "gallery" / study
+    folder = work / "gallery" / figure.removesuffix(".png")
     command = [program, "study", study, *options, "--output", str(folder), "--force", "--quiet", "--jobs", "1"]
-    done = subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, check=False,
+                          cwd=ROOT)
     if done.returncode != 0:
         raise Failure(f"gallery: {' '.join(command)} ends with exit code {done.returncode}: {done.stderr.strip()}")
     return folder
@@ -71,13 +76,14 @@ def write(stage, work, environment, jobs):
     program = shutil.which("hilda", path=environment["PATH"])
     text = HEAD
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        folders = list(pool.map(lambda one: run(program, work, environment, one[0], one[1]), SHOWN))
+        folders = list(pool.map(lambda one: run(program, work, environment, *one[:3]), SHOWN))
     (stage / "gallery").mkdir(parents=True, exist_ok=True)
     for (study, options, figure, what), folder in zip(SHOWN, folders):
         if not (folder / figure).is_file():
             raise Failure(f"gallery: hilda study {study} has not drawn {figure}")
         shutil.copy(folder / figure, stage / "gallery" / figure)
-        text += (f"## {study}\n\n{what} Page: {link(study)}.\n\n"
+        title = study if sum(one[0] == study for one in SHOWN) == 1 else figure.removesuffix(".png")
+        text += (f"## {title}\n\n{what} Page: {link(study)}.\n\n"
                  f"    hilda study {' '.join([study, *options])}\n\n![{what}]({figure})\n\n")
     text += TABLE + "".join(f"| {link(name)} | {content} |\n" for name, content in studies(program, environment))
     write_page(stage / "gallery" / "index.md", text)

@@ -68,7 +68,7 @@ bool check_forces(const dae::Model& model, const lie::State& x)
 {
     bool agree = true;
     int touching = 0;
-    std::vector<contact::RigidPoint> points;
+    std::vector<contact::LoadedPoint> points;
     for (const auto& element : model.rigid_contacts()) {
         const auto& contacts = dynamic_cast<const contact::RigidContacts&>(*element);
         // Pairs that may touch within a step have a force, which may be zero.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/columns/contact_outputs.hpp"
 
+#include "contact/compliant/contact_force.hpp"
 #include "contact/compliant/contact_group.hpp"
+#include "contact/compliant/manifold_force.hpp"
 #include "contact/internal_state.hpp"
 #include "dae/model.hpp"
 #include "run/columns/state_columns.hpp"
@@ -36,6 +38,29 @@ void add_friction(const contact::TrackedForce& force, const contact::TrackedForc
     out.rolling = now.history.deflections.roll_i.slipping || now.history.deflections.roll_j.slipping;
 }
 
+/// The resultant force of several contact points, at their centre of pressure
+ContactOutput resultant(const std::vector<contact::LoadedPoint>& points, const lie::Motion& bi,
+                        const lie::Motion& bj)
+{
+    ContactOutput out;
+    out.gap = std::numeric_limits<double>::infinity();
+    Vec3 normal = Vec3::Zero(), C = Vec3::Zero();
+    bool slips = true;
+    for (const contact::LoadedPoint& p : points) {
+        if (p.at.gap < out.gap) out.gap = p.at.gap, out.n = p.at.n, out.C = p.at.C();
+        if (!(p.N > 0)) continue;
+        out.is_touching = true;
+        out.F_N += p.N, normal += p.N * p.at.n, C += p.N * p.at.C(), out.F += p.F;
+        out.slip = std::max(out.slip, slip_speed(p.at, bi, bj));
+        slips = slips && p.slips;
+    }
+    if (!out.is_touching) return out;
+    out.n = normal.normalized(), out.C = C / out.F_N, out.slipping = slips;
+    for (const contact::LoadedPoint& p : points)
+        if (p.N > 0) out.T += (p.at.C() - out.C).cross(p.F + p.N * (p.at.n - out.n)) + p.T;
+    return out;
+}
+
 /// Columns of all contacts. The pairs of groups follow the other contacts.
 class ContactColumns final : public ColumnGroup {
 public:
@@ -45,7 +70,7 @@ public:
         if (near.pairs() > ContactOutputs::most_pairs_with_columns) return;
         for (int n = 0; n < near.numbers(); ++n)
             if (const auto [group, pair] = near.group_of(n); group->has_pair(pair))
-                pairs.emplace_back(n, std::static_pointer_cast<const contact::ContactForce>(near.force(n)));
+                pairs.emplace_back(n, near.force(n));
     }
 
     void values(const lie::State& x, double* out) override
@@ -63,8 +88,7 @@ public:
         for (const auto& [number, far] : pairs) {
             while (next != list->entry.end() && next->number < number) ++next;
             const bool is_near = next != list->entry.end() && next->number == number;
-            write(ContactOutputs::of(is_near ? static_cast<const contact::ContactForce&>(*next->force) : *far,
-                                     x));
+            write(ContactOutputs::of(is_near ? *next->force : *far, x));
         }
     }
 
@@ -110,22 +134,27 @@ private:
     const ContactOutputs outputs;
     const dae::NearForces& near;
     /// Numbers of the pairs of groups, and their forces while they are not near
-    std::vector<std::pair<int, std::shared_ptr<const contact::ContactForce>>> pairs;
+    std::vector<std::pair<int, std::shared_ptr<const dae::Force>>> pairs;
 };
 
 }  // namespace
 
 ContactOutputs::ContactOutputs(const dae::Model& model) : model(model)
 {
+    const auto add_compliant = [&](const auto& c) {
+        contacts.push_back({.name = c.name,
+                            .i = c.i,
+                            .j = c.j,
+                            .shape_i = c.contact.i,
+                            .shape_j = c.contact.j,
+                            .compliant = &c});
+    };
     for (const auto& force : model.forces())
         if (const auto* c = dynamic_cast<const contact::ContactForce*>(force.get());
             c != nullptr && c->normal_constraint() == nullptr)
-            contacts.push_back({.name = c->name,
-                                .i = c->i,
-                                .j = c->j,
-                                .shape_i = c->contact.i,
-                                .shape_j = c->contact.j,
-                                .compliant = c});
+            add_compliant(*c);
+        else if (const auto* m = dynamic_cast<const contact::ManifoldForce*>(force.get()))
+            add_compliant(*m);
     for (const contact::EvolvingContact* c : evolving_contacts(model)) {
         contacts.push_back({.name = c->name,
                             .i = c->i,
@@ -169,38 +198,28 @@ void ContactOutputs::add_rigid(const contact::RigidContacts& of, size_t& others)
 
 ContactOutput ContactOutputs::of(const contact::RigidContacts& contacts, int pair, const lie::State& x)
 {
-    static thread_local std::vector<contact::RigidPoint> points;
+    static thread_local std::vector<contact::LoadedPoint> points;
     contacts.points(x, pair, points);
     const auto [i, j] = contacts.pairs().pair(pair);
     const lie::Motion &bi = dae::motion(x, i), &bj = dae::motion(x, j);
-    if (points.empty()) return geometry(contacts.nearest(x, pair), bi, bj);
-    ContactOutput out;
-    out.gap = std::numeric_limits<double>::infinity();
-    Vec3 normal = Vec3::Zero(), C = Vec3::Zero();
-    bool slips = true;
-    for (const contact::RigidPoint& p : points) {
-        if (p.at.gap < out.gap) out.gap = p.at.gap, out.n = p.at.n, out.C = p.at.C();
-        if (!(p.N > 0)) continue;
-        out.is_touching = true;
-        out.F_N += p.N, normal += p.N * p.at.n, C += p.N * p.at.C(), out.F += p.F;
-        out.slip = std::max(out.slip, slip_speed(p.at, bi, bj));
-        slips = slips && p.slips;
-    }
-    if (!out.is_touching) return out;
-    out.n = normal.normalized(), out.C = C / out.F_N, out.slipping = slips;
-    for (const contact::RigidPoint& p : points)
-        if (p.N > 0) out.T += (p.at.C() - out.C).cross(p.F + p.N * (p.at.n - out.n));
-    return out;
+    return points.empty() ? geometry(contacts.nearest(x, pair), bi, bj) : resultant(points, bi, bj);
 }
 
-ContactOutput ContactOutputs::of(const contact::ContactForce& force, const lie::State& x)
+ContactOutput ContactOutputs::of(const dae::Force& force, const lie::State& x)
 {
-    const contact::ContactForce::Instant now = force.at(x);
-    ContactOutput out =
-        geometry(now.contact_state.contact_point, dae::motion(x, force.i), dae::motion(x, force.j));
+    const auto [i, j] = force.bodies();
+    const lie::Motion &bi = dae::motion(x, i), &bj = dae::motion(x, j);
+    if (const auto* several = dynamic_cast<const contact::ManifoldForce*>(&force)) {
+        static thread_local std::vector<contact::LoadedPoint> points;
+        several->points(x, points);
+        return points.empty() ? geometry(several->nearest(x), bi, bj) : resultant(points, bi, bj);
+    }
+    const auto& single = dynamic_cast<const contact::ContactForce&>(force);
+    const contact::ContactForce::Instant now = single.at(x);
+    ContactOutput out = geometry(now.contact_state.contact_point, bi, bj);
     if (!(now.contact_state.N > 0)) return out;
     out.F_N = now.contact_state.N, out.is_touching = true;
-    add_friction(force, now, x, out);
+    add_friction(single, now, x, out);
     return out;
 }
 
@@ -208,7 +227,8 @@ ContactOutput ContactOutputs::at(size_t k, const lie::State& x) const
 {
     const Contact& c = contacts[k];
     if (c.rigid != nullptr) return of(*c.rigid, c.pair, x);
-    if (c.compliant != nullptr && c.compliant->is_active(x)) return of(*c.compliant, x);
+    const auto* fallback = dynamic_cast<const contact::TrackedForce*>(c.compliant);
+    if (c.compliant != nullptr && (fallback == nullptr || fallback->is_active(x))) return of(*c.compliant, x);
     return of_constraint(c, x);
 }
 

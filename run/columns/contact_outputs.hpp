@@ -44,7 +44,8 @@ public:
         int i, j;  ///< bodies
         contact::Shape shape_i, shape_j;
 
-        const contact::ContactForce* compliant = nullptr;  ///< the contact, or the fallback of the constraint
+        /// The ContactForce of the contact, or the fallback of the constraint; or the ManifoldForce
+        const dae::Force* compliant = nullptr;
         const contact::EvolvingContact* constraint = nullptr;
         const contact::EvolvingFriction* friction = nullptr;  ///< of the constraint
         const contact::RigidContacts* rigid = nullptr;
@@ -60,8 +61,7 @@ public:
     void near_contacts(const lie::State& x, F f) const
     {
         model.near_forces().visit(x, [&](const dae::Force& force, int number) {
-            const auto& contact = static_cast<const contact::ContactForce&>(force);
-            f(contacts.size() + static_cast<size_t>(number), contact.i, of(contact, x));
+            f(contacts.size() + static_cast<size_t>(number), force.bodies()[0], of(force, x));
         });
         for (const auto& [rigid, first] : rigid_groups)
             rigid->for_touching_pairs(x, [&, first = first, rigid = rigid](int pair) {
@@ -69,7 +69,8 @@ public:
                   of(*rigid, pair, x));
             });
     }
-    static ContactOutput of(const contact::ContactForce& force, const lie::State& x);
+    /// `force` is a ContactForce or a ManifoldForce.
+    static ContactOutput of(const dae::Force& force, const lie::State& x);
     static ContactOutput of(const contact::RigidContacts& contacts, int pair, const lie::State& x);
 
 private:

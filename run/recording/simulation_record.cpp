@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/recording/simulation_record.hpp"
 
-#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/compliant_force.hpp"
 #include "io/archive.hpp"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void check_fits(const SimulationRecord& r, const dae::Model& model, const lie::S
     check(r.pivots.body.empty() || same_lengths(r.pivots), "wrong length of the state of the pivots");
     check(r.number >= 0 && r.iterations >= 0, "negative number of the node");
     const auto compliant = std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
-        return dynamic_cast<const contact::ContactForce*>(force.get()) != nullptr;
+        return dynamic_cast<const contact::CompliantForce*>(force.get()) != nullptr;
     });
     const auto in = [](const Extreme& e, size_t count) {
         return e.place >= -1 && e.place < static_cast<long>(count);

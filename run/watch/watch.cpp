@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/watch/watch.hpp"
 
-#include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/compliant_force.hpp"
 #include "lie/integrator.hpp"
 #include "lie/schemes.hpp"
 #include "run/watch/rigid_contact_findings.hpp"
@@ -31,7 +31,7 @@ Watch::Watch(const dae::Model& model, const lie::State& x, const lie::Integrator
     values.ignore_stability = ignore_stability ? 1 : 0;
     for (int k = 0; k < static_cast<int>(model.forces().size()); ++k) {
         const dae::Force* force = model.forces()[static_cast<size_t>(k)].get();
-        if (const auto* contact = dynamic_cast<const contact::ContactForce*>(force))
+        if (const auto* contact = dynamic_cast<const contact::CompliantForce*>(force))
             compliant.emplace_back(contact, k);
         else if (!force->is_implicit_in(scheme) &&
                  (force->internal_states() > 0 || std::isfinite(force->spring_limits.at_step) ||
@@ -94,12 +94,12 @@ void Watch::check_stability(const dae::Force& force, int number, const lie::Stat
 
 void Watch::check_contacts(const lie::State& x, bool all)
 {
-    const auto check = [&](const contact::ContactForce& contact, int number, double& deepest) {
+    const auto check = [&](const contact::CompliantForce& contact, int number, double& deepest) {
         const double overlap = contact.overlap(x);
         if (overlap == 0 || (overlap <= deepest && !all)) return;
         deepest = std::max(deepest, overlap);
         values.overlap.include(contact.relative_overlap(x), x.t, static_cast<size_t>(number));
-        check_stability(contact, number, x);
+        check_stability(dynamic_cast<const dae::Force&>(contact), number, x);
     };
     for (size_t c = 0; c < compliant.size(); ++c)
         check(*compliant[c].first, compliant[c].second, values.deepest[c]);
@@ -111,7 +111,7 @@ void Watch::check_contacts(const lie::State& x, bool all)
         if (place >= values.near_deepest.size()) values.near_deepest.resize(2 * place + 1);
         DeepestOverlap& deepest = values.near_deepest[place];
         if (deepest.number != number) deepest = {.number = number, .overlap = 0};
-        check(static_cast<const contact::ContactForce&>(force), others + number, deepest.overlap);
+        check(dynamic_cast<const contact::CompliantForce&>(force), others + number, deepest.overlap);
     });
     if (action == Action::record) return;
     if (values.overlap.value > limits.overlap_end) stop("overlap_too_large", overlap_finding().text);

@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace hilda::contact {
-class ContactForce;
+class CompliantForce;
 }
 
 namespace hilda::lie {
@@ -136,7 +136,7 @@ private:
     const Action action;
     const Limits limits;
     std::vector<int> with_limit;  ///< forces that may have a stability limit
-    std::vector<std::pair<const contact::ContactForce*, int>> compliant;
+    std::vector<std::pair<const contact::CompliantForce*, int>> compliant;
     std::vector<int> touching;  ///< number of touching contacts of each body at this node; empty: not counted
     WatchRecord values;         ///< without the energy
     EnergyBalance energy;

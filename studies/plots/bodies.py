@@ -202,14 +202,14 @@ class Scene:
         if segments:
             self.axes.add_collection3d(Line3DCollection(segments, zorder=3, **style))
 
-    def paths(self, of_bodies=True):
+    def paths(self, of_bodies=True, of_contacts=True):
         """The paths of the bodies and of the contact points until the time of the panel"""
         if of_bodies:
             for k, body in enumerate(self.run.bodies):
                 of = self.run.poses[body]
                 r = of.r[of.t <= self.t + 1e-12] @ self.run.turn.T
                 self.axes.plot(*r.T, "-", color=colour_of(k), lw=0.9, zorder=2)
-        for of in self.run.contacts.values():
+        for of in self.run.contacts.values() if of_contacts else ():
             C = of.C[of.t <= self.t + 1e-12] @ self.run.turn.T
             self.axes.plot(*C.T, "-", color=PATH, lw=1.2, zorder=2)
 

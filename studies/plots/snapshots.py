@@ -24,16 +24,18 @@ def draw(folder, run):
     for ax, t in zip(axes, times):
         scene = Scene(ax, run, t, low, high, look(low, high))
         scene.surroundings()
-        scene.paths()
+        scene.paths(of_contacts=len(run.contacts) <= MOST_NAMES)
         scene.bodies()
         scene.joints()
         scene.contacts(0)
         scene.finish(f"$t$ = {t:.4g} s")
     entries = [(body, colour_of(k), "-") for k, body in enumerate(run.bodies)][:MOST_NAMES]
-    if run.contacts:
+    if 0 < len(run.contacts) <= MOST_NAMES:
         entries.append(("path of the contact point", PATH, "-"))
-    named = f" (the first {MOST_NAMES} of {len(run.bodies)} are named)" if len(run.bodies) > MOST_NAMES else ""
-    figure.suptitle(f"{run.name}: bodies{named}, joints, and paths of the centres of mass", fontsize=11)
+    title = f"{run.name}: bodies, joints, and paths of the centres of mass"
+    if len(run.bodies) > MOST_NAMES:
+        title = f"{run.name}: {len(run.bodies)} bodies ({MOST_NAMES} of them named), and paths of the centres of mass"
+    figure.suptitle(title, fontsize=11)
     save(figure, folder, f"snapshots-{run.name}.png", legend(figure, entries), 0.96)
 
 

@@ -2,6 +2,7 @@
 #include "studies/program/check_model.hpp"
 
 #include "contact/compliant/contact_force.hpp"
+#include "contact/compliant/manifold_force.hpp"
 #include "contact/soft_friction.hpp"
 #include "dae/model.hpp"
 #include "dae/model_file.hpp"
@@ -102,6 +103,15 @@ std::vector<CompliantContactInfo> compliant_contacts(const dae::Model& model, co
     std::vector<CompliantContactInfo> all;
     const StableSteps stable_steps(model, x);
     model.for_forces(x, [&](const dae::Force& force, int) {
+        if (const auto* several = dynamic_cast<const contact::ManifoldForce*>(&force)) {
+            const run::ContactOutput now = run::ContactOutputs::of(force, x);
+            all.push_back({.name = several->name,
+                           .gap = now.gap,
+                           .N = now.F_N,
+                           .curvature = 0,
+                           .stable_step = stable_steps.of(force)});
+            return;
+        }
         const auto* contact = dynamic_cast<const contact::ContactForce*>(&force);
         if (contact == nullptr || contact->normal_constraint() != nullptr) return;
         const contact::ContactState m = contact->at(x).contact_state;
@@ -137,7 +147,7 @@ constexpr long most_pairs_in_full = 30;
 std::vector<RigidContactInfo> rigid_contacts(const dae::Model& model, const lie::State& x)
 {
     std::vector<RigidContactInfo> all;
-    std::vector<contact::RigidPoint> points;
+    std::vector<contact::LoadedPoint> points;
     for (const auto& contacts : model.rigid_contacts()) {
         const auto* of = dynamic_cast<const contact::RigidContacts*>(contacts.get());
         if (of == nullptr || of->pairs().count() > run::ContactOutputs::most_rigid_pairs_with_columns)
@@ -202,7 +212,10 @@ std::vector<ContactConstraintInfo> contact_constraints(const dae::Model& model, 
         const dae::Constraint::Arguments at = model.arguments(*c, x);
         const bool fallback_active = dae::Model::mode(*c, x) == contact::EvolvingContact::fallback_active;
         const contact::ContactPoint contact_point =
-            fallback_active ? contact.compliant->at(x).contact_state.contact_point : c->contact_point(at);
+            fallback_active ? dynamic_cast<const contact::ContactForce&>(*contact.compliant)
+                                  .at(x)
+                                  .contact_state.contact_point
+                            : c->contact_point(at);
         const run::ContactOutput loads = contacts.at(k, x);
         all.push_back(
             {.name = c->name,
@@ -352,7 +365,8 @@ int check_model(const run::CheckOptions& options)
     const long pairs = model.near_forces().pairs();  // of groups
     const auto single = std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
         const auto* contact = dynamic_cast<const contact::ContactForce*>(force.get());
-        return contact != nullptr && contact->normal_constraint() == nullptr;
+        return (contact != nullptr && contact->normal_constraint() == nullptr) ||
+               dynamic_cast<const contact::ManifoldForce*>(force.get()) != nullptr;
     });
     const run::RowsOfGeneralConstraints general = run::rows_of_general_constraints(model, d.x);
     const int constraints = model.constraints() + general.others, rows = start.rows + general.of_others;
@@ -362,9 +376,11 @@ int check_model(const run::CheckOptions& options)
         K.assemble(d.x);
         condition = 1 / K.reciprocal_condition();
     }
-    const auto other_forces = std::count_if(
-        model.forces().begin(), model.forces().end(),
-        [](const auto& force) { return dynamic_cast<const contact::TrackedForce*>(force.get()) == nullptr; });
+    const auto other_forces =
+        std::count_if(model.forces().begin(), model.forces().end(), [](const auto& force) {
+            return dynamic_cast<const contact::TrackedForce*>(force.get()) == nullptr &&
+                   dynamic_cast<const contact::CompliantForce*>(force.get()) == nullptr;
+        });
     const Change change_of_start = change(model, given, d.x);
 
     if (options.json) {

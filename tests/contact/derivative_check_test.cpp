@@ -2,6 +2,7 @@
 /// Functions of surfaces and contact laws that contradict differences.
 
 #include "contact/derivative_check.hpp"
+#include "contact/compliant/contact_force.hpp"
 #include "contact/compliant/contact_group.hpp"
 #include "contact/evolving/contact.hpp"
 #include "contact/surfaces/plane.hpp"

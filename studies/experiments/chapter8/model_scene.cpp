@@ -135,7 +135,7 @@ void RigidScene::add(const ContactScene::Interaction& interaction)
 Vec3 RigidScene::load_on(int b) const
 {
     Vec3 F = Vec3::Zero();
-    std::vector<contact::RigidPoint> points;
+    std::vector<contact::LoadedPoint> points;
     for (std::size_t c = 0; c < ground_body.size(); ++c) {
         const auto& contacts = dynamic_cast<const contact::RigidContacts&>(*of.model.rigid_contacts()[c]);
         contacts.for_touching_pairs(of.state(), [&](int number) {
@@ -143,7 +143,7 @@ Vec3 RigidScene::load_on(int b) const
             const bool on_j = j == dae::ground ? ground_body[c] == b : j == of.number[b];
             if (!on_j && i != of.number[b]) return;
             contacts.points(of.state(), number, points);
-            for (const contact::RigidPoint& p : points) F += (on_j ? -1 : 1) * (p.N * p.at.n + p.F);
+            for (const contact::LoadedPoint& p : points) F += (on_j ? -1 : 1) * (p.N * p.at.n + p.F);
         });
     }
     return F;

@@ -2,6 +2,7 @@
 // Groups of contacts by a neighbour list: the same motion as with all pairs, at the cost of the near pairs.
 #include <catch2/catch.hpp>
 
+#include "contact/compliant/contact_force.hpp"
 #include "contact/compliant/contact_group.hpp"
 #include "dae/model_file.hpp"
 #include "io/json.hpp"

@@ -155,7 +155,7 @@ TEST_CASE("a ball rolls or slides down a V-groove with the acceleration of the c
         CHECK(r.body(0).rdot.x() / 0.5 ==
               Approx(rolls ? 1.410563796 : g * std::sin(slope) - 2 * mu * N).epsilon(1e-8));
         for (const int k : {0, 1}) {
-            const contact::RigidPoint point = r.points(k).at(0);
+            const contact::LoadedPoint point = r.points(k).at(0);
             // rolling: N and the friction across the groove are not unique, their sum is
             const double across = point.F.dot(Vec3(0, k == 0 ? -1 : 1, 1).normalized());
             CHECK(point.N + across == Approx(6.700354606).epsilon(1e-7));
@@ -196,7 +196,7 @@ TEST_CASE("the slider of a slider-crank with clearance has the impacts of the ev
         error_before = error;
         // then all corners of the upper side remain closed
         CHECK(r.points(0).size() == 4);
-        for (const contact::RigidPoint& point : r.points(0)) CHECK(std::abs(point.at.gap) < 1e-8);
+        for (const contact::LoadedPoint& point : r.points(0)) CHECK(std::abs(point.at.gap) < 1e-8);
         CHECK(r.statistics().friction_relaxed == 0);
     }
 }

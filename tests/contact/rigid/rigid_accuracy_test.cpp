@@ -55,7 +55,7 @@ TEST_CASE("a box that slides with a spring converges with order one", "[contact]
         Run r(text, h);
         r.to(t);
         double N = 0, friction = 0;
-        for (const contact::RigidPoint& p : r.points(0)) {
+        for (const contact::LoadedPoint& p : r.points(0)) {
             if (p.at.C().x() > r.body(0).r.x()) N += p.N;
             friction -= p.F.x();
         }
@@ -79,7 +79,7 @@ TEST_CASE("a ball that slips and then rolls with a spring converges with order o
     const auto at = [&](double h, double t) -> At {
         Run r(text, h);
         r.to(t);
-        const contact::RigidPoint p = r.points(0).at(0);
+        const contact::LoadedPoint p = r.points(0).at(0);
         return {r.body(0).r.x(), r.body(0).rdot.x(), r.body(0).omega_bar.y(), p.F.x(), p.slips};
     };
     for (const double t : {0.024, 0.2}) {

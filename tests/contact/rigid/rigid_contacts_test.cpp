@@ -60,10 +60,10 @@ TEST_CASE("the forces at the front and rear of a sliding box are those of its ba
     const auto& contacts = dynamic_cast<const contact::RigidContacts&>(*d.model->rigid_contacts()[0]);
     for (const bool at_rest : {false, true}) {
         while (march.node().t < (at_rest ? 1.3 : 0.5)) march.advance({});
-        std::vector<contact::RigidPoint> points;
+        std::vector<contact::LoadedPoint> points;
         contacts.points(march.node(), 0, points);
         double front = 0, rear = 0, friction = 0;
-        for (const contact::RigidPoint& p : points) {
+        for (const contact::LoadedPoint& p : points) {
             (p.at.C().x() > march.node().body[0].r.x() ? front : rear) += p.N;
             friction -= p.F.x();
             CHECK(p.slips == !at_rest);
@@ -169,13 +169,13 @@ TEST_CASE("a stack of ten boxes rests, and each interface carries the weight abo
         const lie::Motion& of = march.node().body[static_cast<size_t>(k)];
         CHECK((of.r - Vec3(0, 0, 0.1 + 0.2 * k)).norm() < 1e-9);
         CHECK(of.rdot.norm() < 1e-9);
-        std::vector<contact::RigidPoint> points;
+        std::vector<contact::LoadedPoint> points;
         const auto& c =
             dynamic_cast<const contact::RigidContacts&>(*d.model->rigid_contacts()[static_cast<size_t>(k)]);
         c.points(march.node(), 0, points);
         CHECK(points.size() == 4);
         double N = 0;
-        for (const contact::RigidPoint& p : points) N += p.N;
+        for (const contact::LoadedPoint& p : points) N += p.N;
         CHECK(N == Approx((10 - k) * g).epsilon(1e-6));
     }
 }
@@ -203,7 +203,7 @@ TEST_CASE("wrong rigid contacts are refused", "[contact][rigid]")
     CHECK_THAT(
         refusal(model(
             box, R"({"body_i": "box", "body_j": "ground", "surface_i": )" + flat_surface +
-                     R"(, "surface_j": {"type": "plane"}, "normal": {"type": "hooke", "stiffness": 1e5}})")),
+                     R"(, "surface_j": {"type": "plane"}, "normal": {"type": "constraint"}})")),
         Contains("touches at several points"));
     CHECK_THAT(
         refusal(model(

@@ -141,7 +141,7 @@ TEST_CASE("a box that carries 10000 times its mass stands and carries the weight
     CHECK((r.body(1).r - Vec3(0.05, 0.02, 0.15)).norm() < 1e-9);
     double N[2] = {};
     for (const int k : {0, 1})
-        for (const contact::RigidPoint& p : r.points(k)) N[k] += p.N;
+        for (const contact::LoadedPoint& p : r.points(k)) N[k] += p.N;
     CHECK(N[0] == Approx(100.01 * g).epsilon(1e-7));
     CHECK(N[1] == Approx(100 * g).epsilon(1e-7));
     CHECK(r.statistics().friction_relaxed == 0);

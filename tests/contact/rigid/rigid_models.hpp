@@ -115,9 +115,9 @@ public:
     }
     hilda::lie::Statistics statistics() const { return integrator->statistics(); }
     /// The contact points of one contact of the file, for a pair of bodies
-    std::vector<hilda::contact::RigidPoint> points(int contact, int pair = 0) const
+    std::vector<hilda::contact::LoadedPoint> points(int contact, int pair = 0) const
     {
-        std::vector<hilda::contact::RigidPoint> found;
+        std::vector<hilda::contact::LoadedPoint> found;
         const auto& all = of.model->rigid_contacts();
         dynamic_cast<const hilda::contact::RigidContacts&>(*all[static_cast<std::size_t>(contact)])
             .points(state(), pair, found);

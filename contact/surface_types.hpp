@@ -5,6 +5,7 @@
 
 #include "contact/shape.hpp"
 #include "dae/object_reader.hpp"
+#include "dae/shapes/point_reader.hpp"
 #include "io/registry.hpp"
 #include "io/schema/type_schema.hpp"
 
@@ -51,18 +52,7 @@ void record_surfaces(io::SchemaRecorder& recorder);
 /// Reads the key "semi_axes": three positive lengths [m]
 Vec3 read_semi_axes(dae::ObjectReader& o);
 
-/// The keys "file" and "scale" of a surface with the points of a mesh file
-struct MeshKeys {
-    std::string path;  ///< to open
-    double scale = 1;  ///< of the coordinates
-};
-/// Reads them. `about_file`: description of "file"; its conditions are added.
-MeshKeys read_mesh_keys(dae::ObjectReader& o, std::string_view about_file);
-
-/// Reads a list of rows of numbers, all of the same length, as a matrix. `width` is the required length of a
-/// row; without it the first row sets the length. About::rest has the schema of a row. Throws
-/// dae::PlacedError.
-Eigen::MatrixXd read_rows(dae::ObjectReader& o, std::string_view key, std::optional<std::size_t> width,
-                          const io::About& about);
+using dae::read_mesh_keys;
+using dae::read_rows;
 
 }  // namespace hilda::contact

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dae/body_reader.hpp"
 
+#include "dae/shapes/shape_reader.hpp"
+
 #include <cmath>
 
 namespace hilda::dae {
@@ -23,70 +25,6 @@ Mat3 inertia(ObjectReader& o)
     const bool full =
         v != nullptr && v->list() != nullptr && !v->list()->empty() && v->list()->front().list() != nullptr;
     return full ? o.matrix("inertia") : Mat3(o.vec3("inertia").asDiagonal());
-}
-
-/// The keys of which a shape has one, for the schema
-void note_shapes(ObjectReader& o)
-{
-    constexpr const char* two = R"("$ref": "#/$defs/dimensions", "minItems": 2, "maxItems": 2)";
-    constexpr const char* three = R"("$ref": "#/$defs/dimensions", "minItems": 3, "maxItems": 3)";
-    o.note("box", three,
-           {"Lengths of the sides along x, y and z of the body frame [m].", "[0.2, 0.1, 0.05]"});
-    o.note("sphere", "positive", {"Radius [m].", "0.1"});
-    o.note("ellipsoid", three, {"Semi-axes along x, y and z of the body frame [m].", "[0.3, 0.2, 0.1]"});
-    o.note("cylinder", two, {"Radius and length [m].", "[0.05, 0.2]"});
-    o.note(
-        "cone", two,
-        {"Radius of the base and height [m]. The apex is at 3/4 of the height from the centre of mass, along "
-         "the axis.",
-         "[0.05, 0.2]"});
-}
-
-/// The shape of a body: one key with the name of the type, and "axis" for a cylinder or a cone
-BodyShape read_shape(ObjectReader& body)
-{
-    ObjectReader o = body.object(
-        "shape",
-        {"Shape of the body, with the centre of mass at the origin of the body frame. It is used for the "
-         "inertia if no inertia is given, for the mass if a density is given, and for pictures.",
-         R"({"box": [0.2, 0.1, 0.05]})"},
-        "shape");
-    o.defines("shape", "Shape",
-              "A solid, given by one of the keys box, sphere, ellipsoid, cylinder and cone.",
-              R"("oneOf": [{"required": ["box"]}, {"required": ["sphere"]}, {"required": ["ellipsoid"]}, )"
-              R"({"required": ["cylinder"]}, {"required": ["cone"]}], )"
-              R"("if": {"required": ["axis"]}, )"
-              R"("then": {"anyOf": [{"required": ["cylinder"]}, {"required": ["cone"]}]})");
-    note_shapes(o);
-    BodyShape shape;
-    for (const std::string& type : BodyShape::types())
-        if (o.find(type) != nullptr) {
-            if (!shape.type.empty()) o.exclude(shape.type, type);
-            shape.type = type;
-        }
-    if (shape.type.empty()) {
-        o.find("axis");
-        o.finish();  // rejects an unknown type
-        o.fail("a shape must have one of the keys box, sphere, ellipsoid, cylinder and cone");
-    }
-    const std::size_t count = BodyShape::count(shape.type);
-    if (count == 1)
-        shape.dimensions = {o.number(shape.type)};
-    else
-        shape.dimensions = o.numbers(shape.type, count);
-    for (const double x : shape.dimensions)
-        if (!(x > 0)) o.fail(shape.type, shape.type + " must have positive dimensions, got " + shortest(x));
-    if (BodyShape::has_axis(shape.type)) {
-        const std::string axis =
-            o.one_of("axis", {"x", "y", "z"},
-                     {"Axis of the body frame that is the axis of a cylinder or a cone.", R"("x")"}, "z");
-        shape.axis = axis[0] - 'x';
-    } else if (o.has("axis")) {
-        o.find("axis");
-        o.fail("axis", "axis is for a cylinder or a cone, got a " + shape.type);
-    }
-    body.record("shape", o.finish());
-    return shape;
 }
 
 }  // namespace
@@ -131,14 +69,14 @@ void read_mass(ObjectReader& o, Body& b)
             "density",
             {"Density [kg/m^3] of a homogeneous body, instead of mass and inertia. It needs a shape.",
              "7850"});
-        b.shape = read_shape(o);
+        b.shape = read_shape(o, true);
         b.m = density * b.shape->volume();
         if (!(b.m > 0) || !std::isfinite(b.m))
             o.fail("density",
                    "the mass, density times volume, must be positive and finite, got " + shortest(b.m));
     } else {
         b.m = o.positive("mass", {"Mass m [kg]. It is required unless shape and density are given.", "1.5"});
-        if (o.find("shape") != nullptr) b.shape = read_shape(o);
+        if (o.find("shape") != nullptr) b.shape = read_shape(o, !o.has("inertia"));
     }
     if (!b.shape || o.has("inertia"))
         b.J_bar = inertia(o);
@@ -147,7 +85,9 @@ void read_mass(ObjectReader& o, Body& b)
     if (!b.shape) return;
     // In the canonical form mass and inertia are given explicitly.
     o.record("mass", b.m);
-    if (!o.has("inertia")) o.record("inertia", json(Vec3(b.J_bar.diagonal())));
+    if (o.has("inertia")) return;
+    const Vec3 moments = b.J_bar.diagonal();
+    o.record("inertia", b.J_bar == Mat3(moments.asDiagonal()) ? json(moments) : json(b.J_bar));
 }
 
 }  // namespace hilda::dae

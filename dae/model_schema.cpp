@@ -105,7 +105,9 @@ const std::vector<std::string> models = {
     R"("r": [0, 0.1, 0], "axis_angle": [1, 0, 0, 0.5], "omega": [2, 0, 0]}, {"name": "roller", )"
     R"("density": 7850, "shape": {"cylinder": [0.05, 0.2], "axis": "x"}, "r": [0, 0, 0.05], )"
     R"("euler_angles": {"sequence": "zxz", "angles": [0.5, 1.2, 0]}}, {"name": "base", "id": 0}, )"
-    R"({"name": "brick", "mass": 2, "shape": {"box": [0.2, 0.1, 0.05]}, "r": [1, 0, 0]}], )"
+    R"({"name": "brick", "mass": 2, "shape": {"box": [0.2, 0.1, 0.05]}, "r": [1, 0, 0]}, )"
+    R"({"name": "stone", "density": 2600, "shape": {"convex": {"vertices": [[0.1, 0.1, 0.1], )"
+    R"([0.1, -0.1, -0.1], [-0.1, 0.1, -0.1], [-0.1, -0.1, 0.1]]}}, "r": [2, 0, 0]}], )"
     R"("events": [{"name": "lowest", "value": "bar.vz", "direction": "rising"}]})"};
 
 /// A model with the example of a type in this list, and with the bodies that the example names
@@ -171,7 +173,7 @@ io::Json model_schema()
 {
     io::SchemaRecorder recorder;
     recorder.definition("model");
-    recorder.shown = {"model", "body", "shape", "ground_body", "euler_angles", "event"};
+    recorder.shown = {"model", "body", "shape", "convex_shape", "ground_body", "euler_angles", "event"};
     for (const std::string& model : models) {
         record_model(model, "example of a model", recorder);
         recorder.shown.erase("model");

@@ -100,7 +100,7 @@ const std::map<std::string, FolderOrder> ordered_rooms = {
 const std::map<std::string, std::set<std::string>> folders = {
     {"io", {"", "arithmetic", "formats", "schema"}},
     {"lie", {"", "cones", "integrators", "solver", "steps", "tree"}},
-    {"dae", {"", "constraints", "curves", "forces", "joints", "outputs", "start"}},
+    {"dae", {"", "constraints", "curves", "forces", "joints", "outputs", "shapes", "start"}},
     {"contact",
      {"", "compliant", "detection", "evolving", "friction", "friction/laws", "mesh", "normal", "rigid",
       "scenes", "surfaces"}},

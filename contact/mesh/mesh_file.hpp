@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/mesh/triangle_mesh.hpp"
+#include "dae/shapes/point_reader.hpp"
 
 #include <string_view>
 
@@ -11,8 +12,8 @@ namespace hilda::contact {
 
 /// The vertices and triangles of a file, with the lines of the text for messages
 struct MeshFile {
-    static constexpr std::size_t max_bytes = std::size_t{64} << 20;
-    static constexpr std::size_t max_triangles = 200000;
+    static constexpr std::size_t max_bytes = dae::MeshKeys::max_bytes;
+    static constexpr std::size_t max_triangles = dae::MeshKeys::max_triangles;
 
     std::string name;
     std::vector<Vec3> vertices;

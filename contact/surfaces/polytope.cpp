@@ -2,9 +2,9 @@
 #include "contact/surfaces/polytope.hpp"
 
 #include "contact/surfaces/area_shares.hpp"
-#include "contact/surfaces/convex_hull.hpp"
 #include "contact/surfaces/positive.hpp"
 #include "contact/tessellation.hpp"
+#include "dae/shapes/convex_hull.hpp"
 #include "io/json.hpp"
 #include "lie/check.hpp"
 
@@ -19,17 +19,6 @@ namespace {
 
 constexpr const char* polytope_name = Polytope::where.data();
 constexpr double coincident = Polytope::tolerance_of_vertices;
-
-/// Normal of a plane polygon times twice its area (Newell)
-Vec3 area_vector(const std::vector<int>& corners, const std::vector<Vec3>& vertex)
-{
-    const Vec3& o = vertex[static_cast<std::size_t>(corners[0])];
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
-        sum += (vertex[static_cast<std::size_t>(corners[k])] - o)
-                   .cross(vertex[static_cast<std::size_t>(corners[k + 1])] - o);
-    return sum;
-}
 
 Vec3 closest_of_segment(const Vec3& a, const Vec3& p, const Vec3& q)
 {
@@ -50,9 +39,7 @@ Polytope::Polytope(std::vector<Vec3> points, double r, std::string name, double 
             lie::reject(polytope_name, "vertex " + std::to_string(k) + " must be finite",
                         vertex[k].transpose());
     for (const Vec3& v : vertex) farthest = std::max(farthest, v.norm());
-    double extent = 0;
-    for (const Vec3& v : vertex) extent = std::max(extent, (v - vertex[0]).norm());
-    const double tolerance = relative_tolerance * extent;
+    const double tolerance = relative_tolerance * dae::extent(vertex);
     for (std::size_t k = 0; k < vertex.size(); ++k)
         for (std::size_t l = 0; l < k; ++l)
             if (!((vertex[k] - vertex[l]).norm() > tolerance))
@@ -60,9 +47,10 @@ Polytope::Polytope(std::vector<Vec3> points, double r, std::string name, double 
                             "vertices " + std::to_string(l) + " and " + std::to_string(k) + " at one place");
 
     std::map<std::pair<int, int>, int> face_left_of;  // of an edge in the direction of the face
-    for (const std::vector<int>& corners : convex_hull(vertex, tolerance)) {
+    const std::vector<std::vector<int>> faces = dae::convex_hull(vertex, tolerance);
+    for (const std::vector<int>& corners : faces) {
         const auto number = static_cast<int>(face.size());
-        const Vec3 n = area_vector(corners, vertex).normalized();
+        const Vec3 n = dae::area_vector(corners, vertex).normalized();
         face.push_back({corners, {}, n, n.dot(vertex[static_cast<std::size_t>(corners[0])])});
         for (std::size_t k = 0; k < corners.size(); ++k)
             face_left_of[{corners[k], corners[(k + 1) % corners.size()]}] = number;
@@ -85,13 +73,11 @@ Polytope::Polytope(std::vector<Vec3> points, double r, std::string name, double 
     std::vector<char> is_corner(vertex.size(), face.empty() ? 1 : 0);
     for (const Face& f : face)
         for (const int v : f.vertex) is_corner[static_cast<std::size_t>(v)] = 1;
-    for (std::size_t k = 0; k < vertex.size(); ++k) {
-        int nearest = 0;
-        if (is_corner[k] == 0 && is_solid() && !(depth_in_core(vertex[k], nearest) >= -2 * tolerance))
+    if (is_solid())
+        if (const auto inside = dae::inside_point(vertex, faces, 2 * tolerance); inside)
             lie::reject(polytope_name, "the vertices must be those of a convex body",
-                        "vertex " + std::to_string(k) + ", which lies " +
-                            io::shortest(-depth_in_core(vertex[k], nearest)) + " m inside of their hull");
-    }
+                        "vertex " + std::to_string(inside->number) + ", which lies " +
+                            io::shortest(inside->depth) + " m inside of their hull");
     // Points of faces that are not corners are left out.
     std::vector<int> number(vertex.size(), -1);
     std::vector<Vec3> corners;

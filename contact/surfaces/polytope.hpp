@@ -4,6 +4,7 @@
 #pragma once
 
 #include "contact/surface.hpp"
+#include "dae/shapes/convex_hull.hpp"
 
 #include <array>
 #include <string_view>
@@ -36,7 +37,8 @@ public:
     explicit Polytope(std::vector<Vec3> points, double radius = 0, std::string name = "convex",
                       double tolerance = tolerance_of_vertices);
     static constexpr std::string_view where = "contact::Polytope";  ///< with which its messages begin
-    static constexpr double tolerance_of_vertices = 1e-9, tolerance_of_files = 1e-6;
+    static constexpr double tolerance_of_vertices = dae::hull_tolerance,
+                            tolerance_of_files = dae::hull_tolerance_of_files;
     static Polytope box(const Vec3& lengths, double radius = 0);  ///< edge lengths [m], about the origin
     static Polytope capsule(double length, double radius);        ///< axis z, `length` between the centres
     static Polytope polygon(const std::vector<Eigen::Vector2d>& corners, double radius = 0);  ///< in z = 0

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// The types of surfaces of model files that are polytopes: box, capsule, polygon, convex.
-#include "contact/mesh/mesh_file.hpp"
 #include "contact/surface_types.hpp"
 #include "contact/surfaces/polytope.hpp"
 #include "lie/check.hpp"
@@ -67,7 +66,7 @@ std::shared_ptr<const Surface> solid(dae::ObjectReader& o, const char* key, std:
 std::shared_ptr<const Surface> read_convex_file(dae::ObjectReader& o)
 {
     o.exclude("file", "vertices");
-    const auto [path, scale] = read_mesh_keys(
+    const dae::MeshKeys keys = read_mesh_keys(
         o,
         "Path of an OBJ or STL file (text or binary) whose corners are those of the body, relative to "
         "the folder of the model file and below it, unless --allow-paths is given, instead of "
@@ -75,8 +74,7 @@ std::shared_ptr<const Surface> read_convex_file(dae::ObjectReader& o)
     o.record("vertices", {});  // its place in the canonical form
     const double radius = read_rounding(o);
     try {
-        std::vector<Vec3> corners = read_mesh_file(path).vertices;
-        for (Vec3& x : corners) x *= scale;
+        std::vector<Vec3> corners = dae::read_mesh_points(keys);
         dae::Json::List vertices;
         for (const Vec3& x : corners) vertices.push_back(dae::json(x));
         o.record("vertices", std::move(vertices));
@@ -86,7 +84,8 @@ std::shared_ptr<const Surface> read_convex_file(dae::ObjectReader& o)
     } catch (const lie::InvalidInput& e) {
         // Messages about the text of the file begin with its name.
         const std::string what = e.what();
-        o.fail("file", what.starts_with(Polytope::where) ? path + what.substr(Polytope::where.size()) : what);
+        o.fail("file",
+               what.starts_with(Polytope::where) ? keys.path + what.substr(Polytope::where.size()) : what);
     }
 }
 

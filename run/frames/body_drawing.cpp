@@ -2,6 +2,7 @@
 #include "run/frames/body_drawing.hpp"
 
 #include "contact/surfaces/ellipsoid.hpp"
+#include "contact/surfaces/polytope.hpp"
 #include "contact/surfaces/sphere.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -50,6 +51,17 @@ PolygonMesh frustum(int axis, double upper, double upper_radius, double lower, d
     return mesh;
 }
 
+/// A capsule about coordinate axis `axis`
+PolygonMesh capsule(int axis, double radius, double length)
+{
+    PolygonMesh mesh = contact::tessellate(contact::Polytope::capsule(length, radius), {});
+    for (Vec3& x : mesh.point) {
+        const Vec3 local = x;
+        for (int k = 0; k < 3; ++k) x[(axis + 1 + k) % 3] = local[k];
+    }
+    return mesh;
+}
+
 PolygonMesh drawing(const dae::BodyShape& shape)
 {
     const std::vector<double>& d = shape.dimensions;
@@ -57,6 +69,8 @@ PolygonMesh drawing(const dae::BodyShape& shape)
     if (shape.type == "sphere") return contact::tessellate(contact::Sphere(d[0]), {});
     if (shape.type == "ellipsoid") return contact::tessellate(contact::Ellipsoid(Vec3(d[0], d[1], d[2])), {});
     if (shape.type == "cylinder") return frustum(shape.axis, 0.5 * d[1], d[0], -0.5 * d[1], d[0]);
+    if (shape.type == "capsule") return capsule(shape.axis, d[0], d[1]);
+    if (shape.type == "convex") return {.point = shape.vertices, .polygon = shape.faces};
     return frustum(shape.axis, 0.75 * d[1], 0, -0.25 * d[1], d[0]);  // cone
 }
 

@@ -40,6 +40,15 @@ Vec3 point(const dae::BodyShape& s, double u, double v)
         x = Vec3(std::sin(w) * std::cos(v), std::sin(w) * std::sin(v), -std::cos(w));
         return s.type == "sphere" ? Vec3(d[0] * x) : Vec3(x.cwiseProduct(Vec3(d[0], d[1], d[2])));
     }
+    if (s.type == "capsule") {  // a half sphere, the side, another half sphere
+        const double w = std::numbers::pi / 2 *
+                         (std::clamp(3 * u - 1, -1., 0.) + std::clamp(3 * u - 2, 0., 1.)),
+                     side = std::clamp(3 * u - 1, 0., 1.);
+        const Vec3 local(d[0] * std::cos(w) * std::cos(v), d[0] * std::cos(w) * std::sin(v),
+                         (side - 0.5) * d[1] + d[0] * std::sin(w));
+        for (int k = 0; k < 3; ++k) x[(s.axis + 1 + k) % 3] = local[k];
+        return x;
+    }
     // a disk for u < 1/3, the side, and for a cylinder another disk
     const bool cone = s.type == "cone";
     const double low = cone ? -d[1] / 4 : -d[1] / 2, high = low + d[1];
@@ -104,7 +113,9 @@ TEST_CASE("volume, centre of mass and inertia of a shape are the integrals over 
         GENERATE(dae::BodyShape{"box", {0.3, 0.2, 0.7}}, dae::BodyShape{"sphere", {0.4}},
                  dae::BodyShape{"ellipsoid", {0.5, 0.3, 0.2}}, dae::BodyShape{"cylinder", {0.2, 0.9}, 0},
                  dae::BodyShape{"cylinder", {0.2, 0.9}, 1}, dae::BodyShape{"cylinder", {0.5, 0.1}, 2},
-                 dae::BodyShape{"cone", {0.3, 0.8}, 0}, dae::BodyShape{"cone", {0.3, 0.8}, 2});
+                 dae::BodyShape{"capsule", {0.2, 0.9}, 0}, dae::BodyShape{"capsule", {0.3, 0.1}, 1},
+                 dae::BodyShape{"capsule", {0.3, 0.4}, 2}, dae::BodyShape{"cone", {0.3, 0.8}, 0},
+                 dae::BodyShape{"cone", {0.3, 0.8}, 2});
     INFO(shape.type << " along " << shape.axis);
     // The error of a tessellation with n sides is O(1/n²): extrapolated, it is O(1/n⁴).
     const Moments coarse = integrated(shape, 60), fine = integrated(shape, 120);
@@ -116,6 +127,16 @@ TEST_CASE("volume, centre of mass and inertia of a shape are the integrals over 
     CHECK(first.norm() < 1e-6 * volume);
     const double mass = 3;
     CHECK((shape.inertia(mass) - mass / volume * J).norm() < 2e-5 * shape.inertia(mass).norm());
+}
+
+TEST_CASE("a capsule without a length is a sphere, and a thin one is a rod", "[dae][shape]")
+{
+    const dae::BodyShape sphere{"sphere", {0.3}}, ball{"capsule", {0.3, 1e-15}};
+    CHECK(ball.volume() == Approx(sphere.volume()).epsilon(1e-14));
+    CHECK((ball.inertia(2) - sphere.inertia(2)).norm() < 1e-14 * sphere.inertia(2).norm());
+    const dae::BodyShape rod{"cylinder", {1e-9, 2}, 1}, needle{"capsule", {1e-9, 2}, 1};
+    CHECK(needle.volume() == Approx(rod.volume()).epsilon(1e-8));
+    CHECK((needle.inertia(2) - rod.inertia(2)).norm() < 1e-8 * rod.inertia(2).norm());
 }
 
 TEST_CASE("a body of a shape has the mass of its density and the inertia of its mass", "[dae][shape]")
@@ -168,7 +189,7 @@ TEST_CASE("wrong shapes and densities are refused", "[dae][shape]")
                Catch::Contains("must be an object, got \"box\""));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {})"),
                Catch::Contains("(/bodies/0/shape): a shape must have one of the keys box, sphere, ellipsoid, "
-                               "cylinder and cone"));
+                               "cylinder, capsule, cone and convex"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"cilinder": [1, 2]})"),
                Catch::Contains("did you mean 'cylinder'?"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"box": [1, 2, 3], "cone": [1, 2]})"),
@@ -177,10 +198,12 @@ TEST_CASE("wrong shapes and densities are refused", "[dae][shape]")
                Catch::Contains("box must be a list of 3 numbers"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"box": [1, 0, 3]})"),
                Catch::Contains("box must have positive dimensions, got 0"));
+    CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"capsule": [0.1, -0.2]})"),
+               Catch::Contains("capsule must have positive dimensions, got -0.2"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"sphere": [1]})"),
                Catch::Contains("sphere must be a number, got [1]"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"sphere": 1, "axis": "x"})"),
-               Catch::Contains("axis is for a cylinder or a cone, got a sphere"));
+               Catch::Contains("axis is for a cylinder, a capsule or a cone, got a sphere"));
     CHECK_THAT(refusal_of_body(R"("mass": 1, "shape": {"cone": [1, 2], "axis": "w"})"),
                Catch::Contains("unknown axis \"w\""));
 }

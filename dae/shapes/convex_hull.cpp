@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surfaces/convex_hull.hpp"
+#include "dae/shapes/convex_hull.hpp"
 
 #include "lie/check.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
-namespace hilda::contact {
+namespace hilda::dae {
 
 namespace {
 
 using lie::Vec3;
 
-constexpr const char* hull_name = "contact::convex_hull";
+constexpr const char* hull_name = "dae::convex_hull";
 
 struct Wrapping {
     const std::vector<Vec3>& points;
@@ -133,4 +134,40 @@ std::vector<std::vector<int>> convex_hull(const std::vector<Vec3>& points, doubl
     return faces;
 }
 
-}  // namespace hilda::contact
+double extent(const std::vector<Vec3>& points)
+{
+    double largest = 0;
+    for (const Vec3& x : points) largest = std::max(largest, (x - points[0]).norm());
+    return largest;
+}
+
+Vec3 area_vector(const std::vector<int>& corners, const std::vector<Vec3>& points)
+{
+    const Vec3& o = points[static_cast<std::size_t>(corners[0])];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+        sum += (points[static_cast<std::size_t>(corners[k])] - o)
+                   .cross(points[static_cast<std::size_t>(corners[k + 1])] - o);
+    return sum;
+}
+
+std::optional<InsidePoint> inside_point(const std::vector<Vec3>& points,
+                                        const std::vector<std::vector<int>>& faces, double depth)
+{
+    std::vector<char> is_corner(points.size(), 0);
+    std::vector<std::pair<Vec3, double>> planes;
+    for (const std::vector<int>& face : faces) {
+        for (const int k : face) is_corner[static_cast<std::size_t>(k)] = 1;
+        const Vec3 n = area_vector(face, points).normalized();
+        planes.emplace_back(n, n.dot(points[static_cast<std::size_t>(face[0])]));
+    }
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        if (is_corner[k] != 0) continue;
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [n, d] : planes) least = std::min(least, d - n.dot(points[k]));
+        if (!(least <= depth)) return InsidePoint{k, least};
+    }
+    return {};
+}
+
+}  // namespace hilda::dae

@@ -85,6 +85,7 @@ int import_model(const ImportOptions& options)
         io::refuse_without_module(std::string("import of ") + format.name, format.module, format.target,
                                   format.package);
     ImportedModel model;
+    model.imports_contacts = options.contacts;
     reinterpret_cast<void (*)(const std::string&, bool, ImportedModel&)>(symbol)(options.file,
                                                                                  options.free_base, model);
     const std::string output =
@@ -99,9 +100,10 @@ int import_model(const ImportOptions& options)
     for (const std::string& warning : model.warnings)
         io::warning(options.file + ": not imported: " + warning);
     std::cout << fmt::format(
-        "written       {}: {} with {} of freedom\n", output,
+        "written       {}: {} with {} of freedom{}\n", output,
         io::counted(static_cast<long>(description.model->all_bodies().size()), "body", "bodies"),
-        io::counted(start.degrees_of_freedom, "degree", "degrees"));
+        io::counted(start.degrees_of_freedom, "degree", "degrees"),
+        options.contacts ? ", " + io::counted(model.contact_pairs, "rigid contact", "rigid contacts") : "");
     return io::exit_code::done;
 }
 

@@ -14,6 +14,7 @@ struct ImportOptions {
     std::string output;             ///< the model file; empty: NAME.json, with the name of `file`
     bool free_base = false;         ///< the first body without a joint is free; else it is fixed
     bool balances_inertia = false;  ///< see ImportedModel
+    bool contacts = false;          ///< rigid contacts of the collision geometries
     bool force = false;             ///< replace `output`
 };
 

@@ -3,6 +3,8 @@
 
 #include "io/error.hpp"
 #include "io/json_source.hpp"
+#include "run/importing/imported_contacts.hpp"
+#include "run/importing/imported_surface.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -49,6 +51,8 @@ public:
         weld();
         io::Json all = {{"hilda_model", 1L}, {"name", from.name}, {"gravity", list(from.gravity)}};
         if (from.balances_inertia) balance();
+        io::Json contacts;
+        if (from.imports_contacts) contacts = imported_contacts(from, body, owners, file);
         if (!from.warnings.empty()) all["note"] = note(from.warnings);
         all["bodies"] = io::Json::array();
         for (size_t n = 0; n < body.size(); ++n)
@@ -64,6 +68,7 @@ public:
         }
         all["constraints"] = std::move(constraints);
         all["forces"] = std::move(forces);
+        if (from.imports_contacts) all["contacts"] = std::move(contacts);
         return io::written(all) + "\n";
     }
 
@@ -311,6 +316,7 @@ private:
 
 std::string model_text(ImportedModel& from, const std::string& file)
 {
+    if (from.has_floor) raise_above_floor(from);
     return ModelWriter(from, file).text();
 }
 
@@ -333,6 +339,7 @@ std::string message_about(const std::string& text, const std::string& message)
     const std::string kind = group == "bodies"        ? "body"
                              : group == "constraints" ? "joint"
                              : group == "forces"      ? "force"
+                             : group == "contacts"    ? "contact"
                                                       : group;
     const std::string key = pointer.substr(std::min(number_end + 1, pointer.size()));
     const std::string of = fmt::format(

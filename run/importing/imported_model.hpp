@@ -5,7 +5,9 @@
 
 #include "lie/so3.hpp"
 
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hilda::run {
@@ -41,11 +43,40 @@ struct ImportedLoop {
     lie::Vec3 point = lie::Vec3::Zero();  ///< global [m]
 };
 
+/// A collision geometry, in the initial configuration. Pose and points are those of its own frame; the axis
+/// of a capsule and the normal of a plane are z.
+struct ImportedShape {
+    enum Type { plane, box, sphere, capsule, ellipsoid, convex };
+
+    std::string name;  ///< in messages, such as "box of link 'base'"
+    int body = -1;     ///< index; -1: the ground
+    Type type = box;
+    lie::Vec3 p = lie::Vec3::Zero();      ///< origin of its frame [m], global
+    lie::Mat3 A = lie::Mat3::Identity();  ///< axes of its frame, global
+    /// box: lengths; sphere: radius; capsule: radius, distance of the centres; ellipsoid: semi-axes [m]
+    lie::Vec3 size = lie::Vec3::Zero();
+    std::vector<lie::Vec3> points{};  ///< convex: the shape is their convex hull [m]
+    double mu = 0.5;                  ///< coefficient of friction [-]
+    bool is_frictionless = false;     ///< without friction, whatever mu is
+    int priority = 0;                 ///< of its friction
+    /// Two shapes may touch if the type mask of one and the partner mask of the other have a common bit.
+    int type_mask = 1, partner_mask = 1;
+    bool touches_neighbours = false;  ///< of the ground: also bodies with a joint to the ground
+};
+
+/// The reason why a cylinder is not imported
+inline constexpr const char* no_cylinders = "rigid contacts have no cylinders";
+
 struct ImportedModel {
     std::string name;
     lie::Vec3 gravity{0, 0, -9.81};  ///< [m/s²]
     std::vector<ImportedBody> bodies;
     std::vector<ImportedLoop> loops;
+    bool imports_contacts = false;  ///< fill `shapes`
+    std::vector<ImportedShape> shapes;
+    std::set<std::pair<int, int>> without_contact;  ///< bodies i < j that do not touch each other
+    bool has_floor = false;  ///< the plane z = 0 is a part of `shapes`: raise_above_floor()
+    long contact_pairs = 0;  ///< of shapes in the model text
     /// Replace principal moments of inertia that violate the triangle inequality by their mean.
     bool balances_inertia = false;
     std::vector<std::string> warnings;  ///< what the model file does not have
@@ -54,6 +85,8 @@ struct ImportedModel {
 /// The text of the model file. Welded bodies are added to their parents. Consecutive joints of a body become
 /// a joint of HILDA: two perpendicular hinges with a common point a universal joint, three a spherical one,
 /// a hinge and a slide on one line a cylindrical one, two slides and a hinge normal to them a planar one.
+///
+/// With imports_contacts it has the rigid contacts of imported_contacts().
 ///
 /// Throws io::InvalidInput "FILE: ..." for other combinations, for springs and dampers of joints without a
 /// single axis, and for bodies that move and have no mass or inertia.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -49,6 +50,7 @@ public:
         for (int b = 1; b < model->nbody; ++b) add_body(b);
         if (free_base) make_base_free();
         for (int e = 0; e < model->neq; ++e) add_loop(e);
+        if (to.imports_contacts && (model->opt.disableflags & mjDSBL_CONTACT) == 0) add_shapes();
         warn();
     }
 
@@ -156,6 +158,72 @@ private:
                             name, gap, angle));
     }
 
+    void add_shapes()
+    {
+        for (int g = 0; g < model->ngeom; ++g)
+            if (model->geom_contype[g] != 0 || model->geom_conaffinity[g] != 0) add_shape(g);
+        for (int k = 0; k < model->nexclude; ++k) {  // (body1 + 1) << 16 + body2 + 1 in the numbers of MuJoCo
+            const int i = (model->exclude_signature[k] >> 16) - 2,
+                      j = (model->exclude_signature[k] & 0xFFFF) - 2;
+            to.without_contact.insert(std::minmax(i, j));
+        }
+        for (int k = 0; k < model->npair; ++k)
+            to.warnings.push_back(
+                fmt::format("pair of the geoms '{}' and '{}': only contacts by contype and "
+                            "conaffinity are imported",
+                            name_of(mjOBJ_GEOM, model->pair_geom1[k], "geom"),
+                            name_of(mjOBJ_GEOM, model->pair_geom2[k], "geom")));
+    }
+
+    void add_shape(int g)
+    {
+        const Vec3 size = vector(model->geom_size + 3 * g);
+        ImportedShape shape{.name = fmt::format("geom '{}' of body '{}'", name_of(mjOBJ_GEOM, g, "geom"),
+                                                name_of(mjOBJ_BODY, model->geom_bodyid[g], "body")),
+                            .body = model->geom_bodyid[g] - 1,
+                            .p = vector(data->geom_xpos + 3 * g),
+                            .A = matrix(data->geom_xmat + 9 * g),
+                            .mu = model->geom_friction[3 * g],
+                            .is_frictionless = model->geom_condim[g] == 1,
+                            .priority = model->geom_priority[g],
+                            .type_mask = model->geom_contype[g],
+                            .partner_mask = model->geom_conaffinity[g],
+                            .touches_neighbours = true};  // MuJoCo tests children of the world with it
+        switch (model->geom_type[g]) {
+            case mjGEOM_PLANE:
+                shape.type = ImportedShape::plane;
+                break;
+            case mjGEOM_SPHERE:
+                shape.type = ImportedShape::sphere, shape.size = Vec3(size[0], 0, 0);
+                break;
+            case mjGEOM_CAPSULE:
+                shape.type = ImportedShape::capsule, shape.size = Vec3(size[0], 2 * size[1], 0);
+                break;
+            case mjGEOM_ELLIPSOID:
+                shape.type = ImportedShape::ellipsoid, shape.size = size;
+                break;
+            case mjGEOM_BOX:
+                shape.type = ImportedShape::box, shape.size = 2 * size;
+                break;
+            case mjGEOM_MESH: {
+                shape.type = ImportedShape::convex;
+                const int mesh = model->geom_dataid[g], first = model->mesh_vertadr[mesh];
+                for (int k = first; k < first + model->mesh_vertnum[mesh]; ++k) {
+                    const float* const x = model->mesh_vert + 3 * k;
+                    shape.points.emplace_back(x[0], x[1], x[2]);
+                }
+                break;
+            }
+            case mjGEOM_CYLINDER:
+                to.warnings.push_back("cylinder " + shape.name + ": " + no_cylinders);
+                return;
+            default:
+                to.warnings.push_back(shape.name + ": rigid contacts have no such geometry");
+                return;
+        }
+        to.shapes.push_back(std::move(shape));
+    }
+
     void warn()
     {
         const mjOption& option = model->opt;
@@ -165,8 +233,8 @@ private:
         bool can_collide = false;
         for (int g = 0; g < model->ngeom; ++g)
             can_collide = can_collide || model->geom_contype[g] != 0 || model->geom_conaffinity[g] != 0;
-        if ((can_collide && model->ngeom > 1) || model->npair > 0)
-            to.warnings.emplace_back("contacts between geoms");
+        if (!to.imports_contacts && ((can_collide && model->ngeom > 1) || model->npair > 0))
+            to.warnings.emplace_back("contacts between geoms, which --contacts imports");
         if (model->nu > 0) to.warnings.emplace_back("actuators");
         if (model->nkey > 0)
             to.warnings.emplace_back("keyframes; the initial state is that of qpos0 at rest");

@@ -3,6 +3,7 @@
 
 #include "io/error.hpp"
 #include "io/files.hpp"
+#include "io/formats/mesh_file.hpp"
 #include "run/importing/import_model.hpp"
 
 #include <console_bridge/console.h>
@@ -68,6 +69,9 @@ public:
         if (!messages.text.empty()) refuse(messages.text);
         to.name = model->getName();
         add(*model->getRoot(), {}, -1, nullptr);
+        if (!to.imports_contacts) return;
+        to.has_floor = true;
+        to.shapes.push_back({.name = "the floor", .type = ImportedShape::plane, .touches_neighbours = true});
     }
 
 private:
@@ -93,12 +97,16 @@ private:
         else if (free_base)
             body.joints.push_back({.name = "base", .type = ImportedJoint::free});
         for (const urdf::VisualSharedPtr& visual : link.visual_array) check_mesh(link, visual->geometry);
-        for (const urdf::CollisionSharedPtr& of : link.collision_array) check_mesh(link, of->geometry);
-        if (!link.collision_array.empty() && !warned_of_contacts) {
-            to.warnings.emplace_back("contacts between collision geometries");
+        const int own = static_cast<int>(to.bodies.size());
+        for (const urdf::CollisionSharedPtr& of : link.collision_array)
+            if (to.imports_contacts)
+                add_shape(link, *of, pose, own);
+            else
+                check_mesh(link, of->geometry);
+        if (!link.collision_array.empty() && !to.imports_contacts && !warned_of_contacts) {
+            to.warnings.emplace_back("contacts between collision geometries, which --contacts imports");
             warned_of_contacts = true;
         }
-        const int own = static_cast<int>(to.bodies.size());
         to.bodies.push_back(body);
         for (const urdf::JointSharedPtr& next : link.child_joints) {
             const Pose child = pose * next->parent_to_joint_origin_transform;
@@ -159,6 +167,57 @@ private:
         one.name = name + "_3";
         one.axis = normal;
         body.joints.push_back(one);
+    }
+
+    void add_shape(const urdf::Link& link, const urdf::Collision& of, const Pose& pose, int own)
+    {
+        const Pose at = pose * of.origin;
+        const auto add_type = [&](const char* type, ImportedShape::Type number, const Vec3& size,
+                                  std::vector<Vec3> points = {}) {
+            to.shapes.push_back({.name = fmt::format("{} of link '{}'", type, link.name),
+                                 .body = own,
+                                 .type = number,
+                                 .p = at.p,
+                                 .A = at.A,
+                                 .size = size,
+                                 .points = std::move(points)});
+        };
+        if (of.geometry == nullptr) {
+            to.warnings.push_back("collision of link '" + link.name + "', which has no geometry");
+            return;
+        }
+        switch (of.geometry->type) {
+            case urdf::Geometry::SPHERE: {
+                const double R = dynamic_cast<const urdf::Sphere&>(*of.geometry).radius;
+                return add_type("sphere", ImportedShape::sphere, Vec3(R, 0, 0));
+            }
+            case urdf::Geometry::BOX: {
+                const urdf::Vector3& d = dynamic_cast<const urdf::Box&>(*of.geometry).dim;
+                return add_type("box", ImportedShape::box, Vec3(d.x, d.y, d.z));
+            }
+            case urdf::Geometry::CYLINDER:
+                to.warnings.push_back("cylinder of link '" + link.name + "': " + no_cylinders);
+                return;
+            case urdf::Geometry::MESH:
+                break;
+        }
+        const auto& mesh = dynamic_cast<const urdf::Mesh&>(*of.geometry);
+        const std::string what = "mesh " + mesh.filename + " of link '" + link.name + "'";
+        if (mesh.filename.find("://") != std::string::npos) {
+            to.warnings.push_back(what + ": the place of a package is not known");
+            return;
+        }
+        try {
+            const io::MeshFile read = io::read_mesh_file(
+                (fs::path(file).parent_path() / mesh.filename).string(), size_t(64) << 20, 200000);
+            std::vector<Vec3> points;
+            for (const auto& [x, y, z] : read.vertices)
+                points.emplace_back(mesh.scale.x * x, mesh.scale.y * y, mesh.scale.z * z);
+            add_type(("mesh " + mesh.filename).c_str(), ImportedShape::convex, Vec3::Zero(),
+                     std::move(points));
+        } catch (const io::InvalidInput& error) {
+            to.warnings.push_back(what + ": " + error.what());
+        }
     }
 
     /// The geometry is not imported: a mesh that is missing does not change the model.

@@ -197,6 +197,9 @@ void add_import_options(CLI::App& c, run::ImportOptions& to)
     c.add_flag(
         "--balance-inertia", to.balances_inertia,
         "replace principal moments of inertia that no body has, a + b < c, by their mean, as MuJoCo does");
+    c.add_flag(
+        "--contacts", to.contacts,
+        "import the collision geometries as rigid contacts; those of a URDF file with the plane z = 0 too");
     c.add_flag("--force", to.force, "replace a file that exists");
 }
 

@@ -56,6 +56,125 @@ class Import(unittest.TestCase):
         self.assertIn(file, said)
         self.assertFalse(os.path.exists(self.path("refused.json")))
 
+    FLOATING = '<joint name="j{0}" type="floating"><parent link="world"/><child link="{0}"/><origin xyz="{1}"/></joint>'
+
+    def collisions(self, *geometries, origin="0 0 0"):
+        return "".join(f'<collision><origin xyz="{origin}"/><geometry>{g}</geometry></collision>' for g in geometries)
+
+    def last_row(self, folder="out"):
+        with open(self.path(folder + "/trajectory.csv"), newline="", encoding="utf-8") as table:
+            return {name: float(value) for name, value in list(csv.DictReader(table))[-1].items()}
+
+    def checked_and_run(self, end="0.5"):
+        """The last row of a run of the imported model, which passes the check"""
+        run(HILDA, "check", self.path("model.json"))
+        run(HILDA, "run", self.path("model.json"), "--end", end, "--output", self.path("out"), "--force")
+        return self.last_row()
+
+    def test_contacts_of_urdf(self):
+        """A box rests on the floor, and a second one falls on it and rests as well."""
+        box = self.collisions('<box size="0.2 0.2 0.1"/>')
+        text = ("<robot name='r'><link name='world'/>" + "".join(f"<link name='{n}'>{INERTIA}{box}</link>" for n in "ab") +
+                self.FLOATING.format("a", "0 0 0.05") + self.FLOATING.format("b", "0.05 0 0.17") + "</robot>")
+        model, said = self.imported(self.written(text), "--contacts")
+        self.assertIn("2 bodies with 12 degrees of freedom, 3 rigid contacts", said)
+        self.assertNotIn("warning", said)
+        of_boxes, of_floor = model["contacts"]
+        self.assertEqual((of_boxes["body_i"], of_boxes["body_j"]), ("a", "b"))
+        self.assertEqual((of_floor["body_i"], of_floor["body_j"], of_floor["surface_j"]), (["a", "b"], "ground", {"type": "plane"}))
+        for contact in model["contacts"]:
+            self.assertEqual(contact["surface_i"], {"type": "box", "lengths": [0.2, 0.2, 0.1]})
+            self.assertEqual((contact["normal"], contact["friction"]), ({"type": "dvi"}, {"law": "coulomb", "mu_s": 0.5}))
+        row = self.checked_and_run()
+        for body, z in (("a", 0.05), ("b", 0.15)):
+            self.assertAlmostEqual(row[body + ".rz"], z, delta=1e-9)
+            self.assertAlmostEqual(row[body + ".vz"], 0, delta=1e-9)
+        # without the option
+        model, said = self.imported(self.written(text))
+        self.assertIn("not imported: contacts between collision geometries, which --contacts imports", said)
+        self.assertNotIn("contacts", model)
+
+    def test_contacts_of_neighbours_and_overlaps(self):
+        """A chain of four links: neighbours have no contact, and those that overlap at the start have none, with a warning."""
+        ball = self.collisions('<sphere radius="0.06"/>', origin="0 0 1")
+        text = self.robot(4, ball).replace('<link name="link_0"/>', '<link name="link_0">' + ball + "</link>")
+        model, said = self.imported(self.written(text, "arm.urdf"), "--contacts")
+        overlaps = [line for line in said.splitlines() if "overlap" in line]
+        self.assertEqual(overlaps, [])  # at a distance of 0.2 m, twice that of neighbours
+        single = [c for c in model["contacts"] if c["body_j"] != "ground" and c["body_i"] != "ground"]
+        self.assertEqual([(c["body_i"], c["body_j"]) for c in single],
+                         [("link_1", "link_3"), ("link_1", "link_4"), ("link_2", "link_4")])
+        fixed = [c for c in model["contacts"] if c.get("surface_i", {}).get("position") == [0, 0, 1]]
+        self.assertEqual([c["body_j"] for c in fixed if c["body_i"] == "ground"], ["link_2", "link_3", "link_4"])
+        model, said = self.imported(self.written(text.replace("0.06", "0.11"), "arm.urdf"), "--contacts")
+        self.assertIn("not imported: contact of sphere of link 'link_1' with sphere of link 'link_3', which overlap by 0.02 m at the start", said)
+        self.assertEqual(sum("overlap" in line for line in said.splitlines()), 3)
+        self.assertIn("contact of sphere of link 'link_1' with sphere of link 'link_3'", model["note"])
+        run(HILDA, "check", self.path("model.json"))
+
+    def test_contacts_that_are_left_out(self):
+        with open(self.path("stone.obj"), "w", encoding="utf-8") as file:
+            for k in range(8):
+                file.write(f"v {k & 1} {k >> 1 & 1} {k >> 2}\n")
+            file.write("v 0.5 0.5 0.5\nf 1 2 3\nf 4 5 6\nf 7 8 9\n")  # the last vertex is inside
+        with open(self.path("plate.obj"), "w", encoding="utf-8") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        shapes = self.collisions('<cylinder radius="0.1" length="0.2"/>', '<mesh filename="package://a/b.stl"/>', '<mesh filename="none.stl"/>',
+                                 '<mesh filename="plate.obj"/>', '<mesh filename="stone.obj" scale="0.1 0.1 0.2"/>')
+        text = (f"<robot name='r'><link name='world'/><link name='a'>{INERTIA}{shapes}</link>" + self.FLOATING.format("a", "0 0 0") + "</robot>")
+        model, said = self.imported(self.written(text), "--contacts")
+        for expected in ("cylinder of link 'a': rigid contacts have no cylinders", "mesh package://a/b.stl of link 'a': the place of a package is not known",
+                         "mesh none.stl of link 'a': .*none.stl", "mesh plate.obj of link 'a': "):
+            self.assertRegex(said, "not imported: " + expected)
+        self.assertEqual(said.count("warning"), 4)
+        surface = model["contacts"][0]["surface_i"]
+        self.assertEqual((len(model["contacts"]), surface["type"], len(surface["vertices"])), (1, "convex", 8))
+        self.assertIn([0.1, 0.1, 0.2], surface["vertices"])
+        self.assertAlmostEqual(self.checked_and_run()["a.rz"], 0, delta=1e-9)
+
+    def test_base_is_raised(self):
+        """A free base whose geometry is below the floor is raised onto it."""
+        box = self.collisions('<box size="0.2 0.2 0.1"/>')
+        text = f"<robot name='r'><link name='a'>{INERTIA}{box}</link></robot>"
+        model, said = self.imported(self.written(text), "--contacts", "--base", "free")
+        self.assertIn("height of body 'a', which is raised by 0.05 m with all others: geometries were below the floor z = 0", said)
+        self.assertEqual(model["bodies"][0]["r"], [0, 0, 0.05])
+        self.assertAlmostEqual(self.checked_and_run()["a.rz"], 0.05, delta=1e-9)
+
+    def test_contacts_of_mjcf(self):
+        def body(name, z, geoms, joint="<freejoint/>"):
+            return f'<body name="{name}" pos="0 0 {z}">{joint}{geoms}</body>'
+        box = '<geom type="box" size="0.05 0.05 0.05" friction="0.3 0 0"/>'
+        capsule = '<geom type="capsule" size="0.02 0.05" euler="0 90 0" {}/>'
+        floor = '<geom name="floor" type="plane" size="1 1 1" friction="0.8 0.1 0.1"/>'
+        text = ("<mujoco><worldbody>" + floor + body("a", 0.05, box) + body("b", 0.15, box) + body("c", 0.22, capsule.format('condim="1"')) +
+                "</worldbody>{}</mujoco>")
+        model, said = self.imported(self.written(text.format("")), "--contacts")
+        self.assertIn("6 rigid contacts", said)
+        mu = {(str(c["body_i"]), str(c["body_j"])): c.get("friction", {}).get("mu_s") for c in model["contacts"]}
+        self.assertEqual(mu, {("ground", "['a', 'b']"): 0.8, ("ground", "c"): 1, ("a", "b"): 0.3, ("['a', 'b']", "c"): 1})
+        row = self.checked_and_run()
+        for name, z in (("a", 0.05), ("b", 0.15), ("c", 0.22)):
+            self.assertAlmostEqual(row[name + ".rz"], z, delta=1e-6)
+        # masks, exclusions, priority and the flag
+        model, said = self.imported(self.written(text.format('<contact><exclude body1="a" body2="b"/></contact>')), "--contacts")
+        self.assertIn("5 rigid contacts", said)
+        model, said = self.imported(self.written(text.format("").replace(box, box.replace("/>", ' contype="0" conaffinity="0"/>'))), "--contacts")
+        self.assertEqual([(c["body_i"], c["body_j"]) for c in model["contacts"]], [("ground", "c")])
+        model, said = self.imported(self.written(text.format("").replace("0.8 0.1 0.1", '0.2 0.1 0.1" priority="1')), "--contacts")
+        self.assertEqual(model["contacts"][0]["friction"]["mu_s"], 0.2)
+        flag = text.format("").replace("<worldbody>", '<option><flag contact="disable"/></option><worldbody>')
+        self.assertEqual(self.imported(self.written(flag), "--contacts")[0]["contacts"], [])
+        frictionless = text.format("").replace(floor, floor.replace("/>", ' condim="1"/>'))
+        model, said = self.imported(self.written(frictionless), "--contacts")
+        self.assertNotIn("friction", next(c for c in model["contacts"] if c["body_j"] == "c" and c["body_i"] == "ground"))
+        # what has no detector
+        text = text.replace(capsule.format('condim="1"'), '<geom name="egg" type="ellipsoid" size="0.02 0.03 0.02"/><geom name="can" type="cylinder" size="0.1 0.1"/>')
+        model, said = self.imported(self.written(text.format("")), "--contacts")
+        self.assertRegex(said, "cylinder geom 'can' of body 'c': rigid contacts have no cylinders")
+        self.assertRegex(said, "contact of geom 'geom_1' of body 'a' with geom 'egg' of body 'c': a box can be paired with .*; and 1 other pair of equal geometries")
+        run(HILDA, "check", self.path("model.json"))
+
     @unittest.skipUnless(MUJOCO, "built without MuJoCo")
     def test_motion_is_that_of_mujoco(self):
         step, end = "2e-4", "1"

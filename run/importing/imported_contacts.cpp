@@ -5,6 +5,7 @@
 #include "dae/object_reader.hpp"
 #include "io/error.hpp"
 #include "io/message.hpp"
+#include "lie/check.hpp"
 #include "run/importing/imported_surface.hpp"
 
 #include <fmt/format.h>
@@ -144,18 +145,29 @@ private:
         return !is_jointed_to(a.owner, b.owner) && !is_jointed_to(b.owner, a.owner);
     }
 
-    /// Overlap at the start; 0 if it is accepted
-    double overlap(const contact::Detector& detector, const OwnedShape& a, const OwnedShape& b) const
+    /// Why a pair has no contact at the start: an overlap, a cylinder on or above a plane with its end
+    /// parallel to it, or poses without a contact point. Empty if it has one or is apart.
+    std::string start_problem(const contact::Detector& detector, const OwnedShape& a,
+                              const OwnedShape& b) const
     {
+        constexpr double upright = 1e-3;  // [rad]
+        if ((a.of->type == ImportedShape::disk || b.of->type == ImportedShape::disk) &&
+            a.of->A.col(2).cross(b.of->A.col(2)).norm() < upright)
+            return ": a cylinder that stands on its end";
         const lie::Motion at_a = pose(a.owner), at_b = pose(b.owner);
         const double distance =
             (at_a.r + at_a.A * a.shape.position - at_b.r - at_b.A * b.shape.position).norm();
-        if (distance > a.shape.surface->bounding_radius() + b.shape.surface->bounding_radius()) return 0;
+        if (distance > a.shape.surface->bounding_radius() + b.shape.surface->bounding_radius()) return "";
         contact::Manifold points;
-        detector.detect_all(at_a, at_b, 0, points);
-        double most = 0;
-        for (const contact::ManifoldPoint& p : points) most = std::max(most, -p.at.gap);
-        return most > accepted_overlap * smaller_size(a.shape, b.shape) ? most : 0;
+        try {
+            detector.detect_all(at_a, at_b, 0, points);
+        } catch (const lie::NumericalFailure& error) {
+            return ": " + reason_of(error);
+        }
+        double depth = 0;
+        for (const contact::ManifoldPoint& p : points) depth = std::max(depth, -p.at.gap);
+        if (!(depth > accepted_overlap * smaller_size(a.shape, b.shape))) return "";
+        return fmt::format(", which overlap by {:.3g} m at the start", depth);
     }
 
     /// Adds the contacts between the shapes of two kinds, or of one.
@@ -163,7 +175,7 @@ private:
     {
         std::vector<std::pair<const OwnedShape*, const OwnedShape*>> pairs;  // at most most_entries + 1
         long possible = 0, count = 0;
-        LeftOut without_detector, overlapping;
+        LeftOut without_detector, at_start;
         std::unique_ptr<contact::Detector> detector;
         for (std::size_t i = 0; i < first.size(); ++i)
             for (std::size_t j = same ? i + 1 : 0; j < second.size(); ++j) {
@@ -175,14 +187,14 @@ private:
                 else if (detector == nullptr)
                     ++without_detector.count;
                 if (detector == nullptr) continue;
-                if (const double depth = overlap(*detector, a, b); depth > 0) {
-                    overlapping.add(a, b, fmt::format(", which overlap by {:.3g} m at the start", depth));
+                if (const std::string problem = start_problem(*detector, a, b); !problem.empty()) {
+                    at_start.add(a, b, problem);
                 } else {
                     ++count;
                     if (pairs.size() <= most_entries) pairs.emplace_back(&a, &b);
                 }
             }
-        for (const LeftOut* out : {&without_detector, &overlapping}) out->warn(model.warnings);
+        for (LeftOut* out : {&without_detector, &at_start}) out->warn(model.warnings);
         model.contact_pairs += count;
         if (count > 1 && count == possible && (same || are_disjoint(first, second)))
             return add_group(first, second, same);
@@ -203,13 +215,14 @@ private:
             if (named.size() < most_named)
                 named.push_back(fmt::format("contact of {} with {}{}", a.of->name, b.of->name, why));
         }
-        void warn(std::vector<std::string>& warnings) const
+        void warn(std::vector<std::string>& warnings)
         {
-            const long others = count - static_cast<long>(named.size());
-            warnings.insert(warnings.end(), named.begin(), named.end());
-            if (others > 0)
-                warnings.back() +=
+            if (const long others = count - static_cast<long>(named.size()); others > 0)
+                named.back() +=
                     "; and " + io::counted(others, "other pair", "other pairs") + " of equal geometries";
+            for (const std::string& text : named)  // the two ends of a cylinder have the same text
+                if (std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+                    warnings.push_back(text);
         }
     };
 

@@ -44,16 +44,17 @@ struct ImportedLoop {
 };
 
 /// A collision geometry, in the initial configuration. Pose and points are those of its own frame; the axis
-/// of a capsule and the normal of a plane are z.
+/// of a capsule or disk and the normal of a plane are z.
 struct ImportedShape {
-    enum Type { plane, box, sphere, capsule, ellipsoid, convex };
+    enum Type { plane, box, sphere, capsule, ellipsoid, disk, convex };
 
     std::string name;  ///< in messages, such as "box of link 'base'"
     int body = -1;     ///< index; -1: the ground
     Type type = box;
     lie::Vec3 p = lie::Vec3::Zero();      ///< origin of its frame [m], global
     lie::Mat3 A = lie::Mat3::Identity();  ///< axes of its frame, global
-    /// box: lengths; sphere: radius; capsule: radius, distance of the centres; ellipsoid: semi-axes [m]
+    /// box: lengths; sphere and disk: radius; capsule: radius, distance of the centres; ellipsoid: semi-axes
+    /// [m]
     lie::Vec3 size = lie::Vec3::Zero();
     std::vector<lie::Vec3> points{};  ///< convex: the shape is their convex hull [m]
     double mu = 0.5;                  ///< coefficient of friction [-]
@@ -63,9 +64,6 @@ struct ImportedShape {
     int type_mask = 1, partner_mask = 1;
     bool touches_neighbours = false;  ///< of the ground: also bodies with a joint to the ground
 };
-
-/// The reason why a cylinder is not imported
-inline constexpr const char* no_cylinders = "rigid contacts have no cylinders";
 
 struct ImportedModel {
     std::string name;
@@ -81,6 +79,19 @@ struct ImportedModel {
     bool balances_inertia = false;
     std::vector<std::string> warnings;  ///< what the model file does not have
 };
+
+/// Adds the two ends of a cylinder about the z axis of `shape`, with a radius and a length [m]. On a plane
+/// the rims are its contact, unless it stands on an end.
+inline void add_cylinder(ImportedModel& model, ImportedShape shape, double radius, double length)
+{
+    shape.type = ImportedShape::disk;
+    shape.size = lie::Vec3(radius, 0, 0);
+    const lie::Vec3 centre = shape.p, half = 0.5 * length * shape.A.col(2);
+    for (const double sign : {-1., 1.}) {
+        shape.p = centre + sign * half;
+        model.shapes.push_back(shape);
+    }
+}
 
 /// The text of the model file. Welded bodies are added to their parents. Consecutive joints of a body become
 /// a joint of HILDA: two perpendicular hinges with a common point a universal joint, three a spherical one,

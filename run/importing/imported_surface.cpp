@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/importing/imported_surface.hpp"
 
+#include "contact/surfaces/disk.hpp"
 #include "contact/surfaces/ellipsoid.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/polytope.hpp"
@@ -33,6 +34,16 @@ std::vector<Vec3> corners_of_hull(const std::vector<Vec3>& points)
     return all;
 }
 
+/// Smallest z of the points of a shape [m]. Throws as surface_of().
+double lowest_height(const ImportedShape& shape)
+{
+    io::Json keys;
+    const Vec3 down = -(shape.A.transpose() * Vec3::UnitZ()).normalized();
+    const std::shared_ptr<const contact::Surface> surface = surface_of(shape, keys);
+    if (shape.type == ImportedShape::disk) return shape.p.z() - shape.size[0] * down.head<2>().norm();
+    return (shape.p + shape.A * *surface->support(down)).z();
+}
+
 }  // namespace
 
 std::shared_ptr<const contact::Surface> surface_of(const ImportedShape& shape, io::Json& keys)
@@ -54,6 +65,9 @@ std::shared_ptr<const contact::Surface> surface_of(const ImportedShape& shape, i
         case ImportedShape::ellipsoid:
             keys = {{"type", "ellipsoid"}, {"semi_axes", dae::json(size)}};
             return std::make_shared<contact::Ellipsoid>(size);
+        case ImportedShape::disk:
+            keys = {{"type", "disk"}, {"radius", size[0]}};
+            return std::make_shared<contact::Disk>(size[0]);
         case ImportedShape::convex:
             break;
     }
@@ -81,9 +95,7 @@ void raise_above_floor(ImportedModel& model)
     for (const ImportedShape& shape : model.shapes) {
         if (shape.body < 0) continue;
         try {
-            io::Json keys;
-            const Vec3 down = -(shape.A.transpose() * Vec3::UnitZ()).normalized();
-            lowest = std::min(lowest, (shape.p + shape.A * *surface_of(shape, keys)->support(down)).z());
+            lowest = std::min(lowest, lowest_height(shape));
         } catch (const io::InvalidInput&) {
             continue;  // has a warning in imported_contacts()
         }

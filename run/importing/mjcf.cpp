@@ -215,8 +215,7 @@ private:
                 break;
             }
             case mjGEOM_CYLINDER:
-                to.warnings.push_back("cylinder " + shape.name + ": " + no_cylinders);
-                return;
+                return add_cylinder(to, std::move(shape), size[0], 2 * size[1]);
             default:
                 to.warnings.push_back(shape.name + ": rigid contacts have no such geometry");
                 return;

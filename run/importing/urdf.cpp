@@ -195,9 +195,12 @@ private:
                 const urdf::Vector3& d = dynamic_cast<const urdf::Box&>(*of.geometry).dim;
                 return add_type("box", ImportedShape::box, Vec3(d.x, d.y, d.z));
             }
-            case urdf::Geometry::CYLINDER:
-                to.warnings.push_back("cylinder of link '" + link.name + "': " + no_cylinders);
-                return;
+            case urdf::Geometry::CYLINDER: {
+                const auto& of_type = dynamic_cast<const urdf::Cylinder&>(*of.geometry);
+                return add_cylinder(
+                    to, {.name = "cylinder of link '" + link.name + "'", .body = own, .p = at.p, .A = at.A},
+                    of_type.radius, of_type.length);
+            }
             case urdf::Geometry::MESH:
                 break;
         }

@@ -123,7 +123,7 @@ class Import(unittest.TestCase):
                                  '<mesh filename="plate.obj"/>', '<mesh filename="stone.obj" scale="0.1 0.1 0.2"/>')
         text = (f"<robot name='r'><link name='world'/><link name='a'>{INERTIA}{shapes}</link>" + self.FLOATING.format("a", "0 0 0") + "</robot>")
         model, said = self.imported(self.written(text), "--contacts")
-        for expected in ("cylinder of link 'a': rigid contacts have no cylinders", "mesh package://a/b.stl of link 'a': the place of a package is not known",
+        for expected in ("contact of cylinder of link 'a' with the floor: a cylinder that stands on its end", "mesh package://a/b.stl of link 'a': the place of a package is not known",
                          "mesh none.stl of link 'a': .*none.stl", "mesh plate.obj of link 'a': "):
             self.assertRegex(said, "not imported: " + expected)
         self.assertEqual(said.count("warning"), 4)
@@ -131,6 +131,26 @@ class Import(unittest.TestCase):
         self.assertEqual((len(model["contacts"]), surface["type"], len(surface["vertices"])), (1, "convex", 8))
         self.assertIn([0.1, 0.1, 0.2], surface["vertices"])
         self.assertAlmostEqual(self.checked_and_run()["a.rz"], 0, delta=1e-9)
+
+    def test_contacts_of_wheels(self):
+        """The rims of a cylinder are its contact on the floor: a cart whose wheels stand at the start rolls as a rigid body does."""
+        wheel = (f'<link name="{{0}}">{INERTIA}<collision><origin rpy="1.5707963267948966 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>'
+                 '</collision></link><joint name="axle_{0}" type="continuous"><parent link="cart"/><child link="{0}"/><origin xyz="{1} {2} -0.1"/>'
+                 '<axis xyz="0 1 0"/></joint>')
+        text = (f"<robot name='r'><link name='cart'>{INERTIA}{self.collisions('<box size=%s/>')}</link>" % '"0.4 0.2 0.1"' +
+                "".join(wheel.format(name, x, y) for name, x, y in (("fl", 0.2, 0.15), ("fr", 0.2, -0.15), ("rl", -0.2, 0.15), ("rr", -0.2, -0.15))) +
+                "</robot>")
+        model, said = self.imported(self.written(text), "--contacts", "--base", "free")
+        self.assertIn("raised by 0.2 m", said)
+        self.assertRegex(said, "contact of cylinder of link 'fl' with cylinder of link 'fr': a disk can be paired with a plane only.*; and 5 other pairs")
+        disks = [c for c in model["contacts"] if c["surface_i"]["type"] == "disk"]
+        self.assertEqual([(c["body_i"], c["body_j"]) for c in disks], [(["fl", "fr", "rl", "rr"], "ground")] * 2)
+        model["gravity"] = [1, 0, -9.81]
+        self.written(json.dumps(model), "model.json")
+        row = self.checked_and_run("1")
+        # five masses of 1 kg and four moments of inertia of 1 kg m²: a = 5 g_x / (5 + 4/R²), R = 0.1 m
+        self.assertAlmostEqual(row["cart.vx"], 5 / 405, delta=1e-8)
+        self.assertAlmostEqual(row["cart.rz"], 0.2, delta=1e-8)
 
     def test_base_is_raised(self):
         """A free base whose geometry is below the floor is raised onto it."""
@@ -171,7 +191,9 @@ class Import(unittest.TestCase):
         # what has no detector
         text = text.replace(capsule.format('condim="1"'), '<geom name="egg" type="ellipsoid" size="0.02 0.03 0.02"/><geom name="can" type="cylinder" size="0.1 0.1"/>')
         model, said = self.imported(self.written(text.format("")), "--contacts")
-        self.assertRegex(said, "cylinder geom 'can' of body 'c': rigid contacts have no cylinders")
+        self.assertRegex(said, "contact of geom 'floor' of body 'world' with geom 'can' of body 'c': a cylinder that stands on its end")
+        self.assertRegex(said, "contact of geom 'geom_1' of body 'a' with geom 'can' of body 'c': a box can be paired with .*, got box and disk; and 1 other pair")
+        self.assertEqual(said.count("box and disk"), 1)
         self.assertRegex(said, "contact of geom 'geom_1' of body 'a' with geom 'egg' of body 'c': a box can be paired with .*; and 1 other pair of equal geometries")
         run(HILDA, "check", self.path("model.json"))
 

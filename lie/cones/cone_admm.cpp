@@ -43,7 +43,6 @@ int ConeAdmm::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, 
         set_right_side(problem);
         matrix.solve(b, now.y);
         project(problem);
-        now.residual = problem.residual(now);
         if (now.residual < 0.5 * halved) halved = now.residual, halved_at = k;
         if (now.residual < x.residual) x = now;
         const double tolerance = std::min(to.last, to.first * std::pow(10, k / iterations_per_digit));
@@ -117,6 +116,7 @@ void ConeAdmm::set_right_side(const ConeProblem& problem)
 void ConeAdmm::project(const ConeProblem& problem)
 {
     primal = dual = 0;
+    now.residual = problem.joint_residual(now.y);
     for (int c = 0; c < problem.contacts(); ++c) {
         const double R = rho * problem.g[c];
         Vec3 u = problem.u(c, now.y);
@@ -125,6 +125,8 @@ void ConeAdmm::project(const ConeProblem& problem)
         now.p[c] = p[c] + W[c] * (w[c] - u - now.offset[c] * Vec3::UnitX());
         now.offset[c] = problem.beta[c] + problem.slip_term(c, u);
         const Vec3 u_hat = u + now.offset[c] * Vec3::UnitX();
+        const double error = problem.natural_map(c, now.p[c], u_hat);
+        if (!(error <= now.residual)) now.residual = error;  // also NaN
         const Vec3 next = project_on_cone(p[c] - u_hat / R, problem.mu[c]);
         const Vec3 target = u_hat + R * (next - p[c]);
         primal = std::max(primal, (target - w[c]).norm() / rho);

@@ -3,23 +3,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hilda::lie {
+
+namespace {
+
+constexpr int before_growth = 50;                // factorisations with the first tolerance
+constexpr double factorizations_per_digit = 50;  // after which the tolerance has become ten times as large
+constexpr double largest_rho = 10, reduction_after_failure = 0.7;
+
+}  // namespace
 
 int ConeNewton::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, double tolerance,
                       const Options& options)
 {
     rho = options.rho;
     coulomb = options.coulomb;
-    const double least_rho = 1e-2 * rho;
+    const double least_rho = options.least * rho;
     W.resize(x.p.size());
     p = x.p;
+    best.residual = std::numeric_limits<double>::infinity();
     int factored = 0;
+    double reduction = options.reduction;
     for (int outer = 0; outer < options.most_outer && factored < options.most_factorizations; ++outer) {
         centre = x.p;
         offset = x.offset;
+        before = x.y;
         set_impulses(problem, x.y);
-        for (int inner = 0; inner < options.most_inner; ++inner) {
+        bool solved = false;
+        for (int inner = 0; inner < options.most_inner && !solved; ++inner) {
             for (int c = 0; c < problem.contacts(); ++c) W[c] = weight(problem, c, x.y);
             set_residual(problem, x.y);
             matrix.factor(problem, W);
@@ -32,13 +45,24 @@ int ConeNewton::solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x
             for (int c = 0; c < problem.contacts(); ++c)
                 change = std::max(change, rho * problem.g[c] * (p[c] - centre[c]).norm());
             const double error = unbalance(problem);
-            if (error < 0.1 * change || error < 0.1 * tolerance) break;
+            solved = error < 0.1 * change || error < 0.1 * tolerance;
+        }
+        if (!solved && options.growth > 1) {
+            x.y = before;
+            rho *= options.growth;
+            reduction = std::max(reduction, reduction_after_failure);
+            if (rho > largest_rho) break;
+            continue;
         }
         x.p = p;
         x.residual = std::max(coulomb ? problem.residual(x) : problem.convex_residual(x), unbalance(problem));
-        if (x.residual <= tolerance) break;
-        rho = std::max(options.reduction * rho, least_rho);
+        if (x.residual < best.residual) best = x;
+        const double grown =
+            tolerance * std::pow(10, std::max(0, factored - before_growth) / factorizations_per_digit);
+        if (x.residual <= std::max(tolerance, std::min(options.last_tolerance, grown))) break;
+        rho = std::max(reduction * rho, least_rho);
     }
+    if (best.residual < x.residual) x = best;
     return factored;
 }
 

@@ -12,6 +12,10 @@
 /// For Coulomb's law the offset is μ |u_t| + β of the same v. Newton's matrix contains its derivative, and
 /// the line search reduces the residual of the momenta. Slip terms that lag by an outer iteration would need
 /// R ≥ 10⁻² g and several hundred factorisations for some chains.
+///
+/// An outer iteration whose Newton iterations do not converge can be repeated with larger proximal terms,
+/// which are then reduced slowly. A pile with friction may need this: with small proximal terms its Newton
+/// iterations cycle, with large ones the impulses between bodies at rest change little in an outer iteration.
 
 #pragma once
 
@@ -30,12 +34,15 @@ public:
         double rho = 1e-4;
         int most_outer = 20, most_inner = 60;
         int most_factorizations = 60;
-        bool coulomb = false;  ///< Coulomb's law; otherwise the convex problem with the offsets of x
-        double reduction = 1;  ///< of ρ after each outer iteration
+        double last_tolerance = 0;  ///< of many factorisations: after 50 it grows by ten in each 50 of them
+        bool coulomb = false;       ///< Coulomb's law; otherwise the convex problem with the offsets of x
+        double reduction = 1;       ///< of ρ after each outer iteration
+        double least = 1e-2;        ///< ρ, relative to the first one
+        double growth = 1;          ///< of ρ after an outer iteration that is repeated
     };
     /// Iterates from x until the residual is below the tolerance [m/s]: that of the law, or that of the
-    /// convex problem. x becomes the last iterate, and x.residual that
-    /// residual. Returns the number of factorisations.
+    /// convex problem. x becomes the iterate with the smallest residual, and x.residual that residual.
+    /// Returns the number of factorisations.
     int solve(const ConeProblem& problem, BodyMatrix& matrix, Iterate& x, double tolerance,
               const Options& options);
 
@@ -54,7 +61,8 @@ private:
     std::vector<Vec3> centre, p;  ///< p⁰_c and p_c(v)
     std::vector<double> offset;
     std::vector<Mat3> W;
-    Eigen::VectorXd e, step, trial;
+    Eigen::VectorXd e, step, trial, before;
+    Iterate best;
 };
 
 }  // namespace hilda::lie

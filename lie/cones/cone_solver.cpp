@@ -12,12 +12,13 @@ namespace hilda::lie {
 
 namespace {
 
-constexpr int most_admm = 300, most_patient_admm = 3000, most_newton = 50, most_passes = 20;
+constexpr int most_admm = 300, most_cautious_newton = 400, most_patient_admm = 3000, most_newton = 50,
+              most_passes = 20;
 // in units of rounding()
 constexpr double least_rounding = 4, most_rounding = 64;
-// parts of the acceptable residual: the aim of all methods, and the residual below which only the quick ones
-// are tried
-constexpr double good = 5e-3, sufficient = 0.1;
+// parts of the acceptable residual: the aim of all methods, the residual below which only the quick ones are
+// tried, and the last tolerance of the cautious Newton method
+constexpr double good = 5e-3, sufficient = 0.1, last = 0.9;
 
 /// Rounding error of the residual: that of the velocities which the impulses cause
 double rounding(const ConeProblem& problem, const ConeProblem::Iterate& x)
@@ -64,18 +65,20 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
     other.residual = std::numeric_limits<double>::infinity();
     matrix.set_contacts(problem);
     const double aim = std::max(at_least(to.result), good * to.acceptable),
-                 enough = std::max(aim, sufficient * to.acceptable);
+                 enough = std::max(aim, sufficient * to.acceptable),
+                 fair = std::max(enough, last * to.acceptable);
     count +=
         admm.solve(problem, matrix, x, {to.result, aim, least_rounding * rounding(problem, x)}, most_admm);
     if (!(x.residual <= aim)) {
         try {
             solve_by_newton(problem, x, aim);
+            if (!(x.residual <= enough)) solve_by_cautious_newton(problem, x, aim, fair);
             // An accelerated iteration can cycle where the plain one converges slowly.
             for (const bool accelerates : {false, true})
-                if (!(x.residual <= enough))
+                if (!(x.residual <= fair))
                     count += admm.solve(problem, matrix, x, {aim, aim, aim}, most_patient_admm, accelerates);
-            if (!(x.residual <= enough)) solve_from_interior_point(problem, x, aim);
-            if (!(x.residual <= enough)) solve_by_fixed_point(problem, x, aim);
+            if (!(x.residual <= fair)) solve_from_interior_point(problem, x, aim);
+            if (!(x.residual <= fair)) solve_by_fixed_point(problem, x, aim);
         } catch (const NumericalFailure&) {
             // a matrix that is not finite; the best iterate remains
         }
@@ -111,6 +114,25 @@ void ConeSolver::solve_by_newton(const ConeProblem& problem, Iterate& x, double 
     other = x;
     count += newton.solve(problem, matrix, other, tolerance,
                           {.rho = 1e-3, .most_outer = 3, .most_inner = 4, .coulomb = true, .reduction = 0.1});
+    keep_better(problem, x);
+}
+
+/// In piles, the impulses that bodies at rest exert on each other change slowly in ADMM, and Newton's method
+/// with small proximal terms does not converge.
+void ConeSolver::solve_by_cautious_newton(const ConeProblem& problem, Iterate& x, double tolerance,
+                                          double last_tolerance)
+{
+    other = x;
+    count += newton.solve(problem, matrix, other, tolerance,
+                          {.rho = 1e-2,
+                           .most_outer = most_cautious_newton,
+                           .most_inner = 8,
+                           .most_factorizations = most_cautious_newton,
+                           .last_tolerance = last_tolerance,
+                           .coulomb = true,
+                           .reduction = 0.3,
+                           .least = 1e-4,
+                           .growth = 3});
     keep_better(problem, x);
 }
 

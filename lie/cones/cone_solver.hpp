@@ -5,16 +5,18 @@
 ///    at rest or in steady sliding need no more than this.
 /// 2. ADMM with Anderson acceleration, up to 300 iterations.
 /// 3. A few steps of the proximal Newton method for Coulomb's law from the result of 2.
-/// 4. ADMM with up to 3000 iterations, then again with acceleration.
-/// 5. Newton's method from the solution of the convex problem without slip terms, by the interior point
+/// 4. The same with larger proximal terms, which are reduced slowly: up to 400 factorisations.
+/// 5. ADMM with up to 3000 iterations, then again with acceleration.
+/// 6. Newton's method from the solution of the convex problem without slip terms, by the interior point
 ///    method.
-/// 6. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson
+/// 7. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson
 ///    acceleration.
 ///
 /// The result is the iterate with the smallest residual. The methods end at 5·10⁻³ of the acceptable
-/// residual, and those from 4 on are left out below 10⁻¹ of it. A result above the acceptable residual is an
-/// error, unless the convex problem with the last slip terms is solved: the result then satisfies the law
-/// with a slip term that differs from μ |u_t| (friction_relaxed).
+/// residual; the tolerance of 4 grows to 0.9 of it. Method 4 is left out below 10⁻¹ of the acceptable
+/// residual, and those from 5 on below 0.9 of it. A result above the acceptable residual is an error, unless
+/// the convex problem with the last slip terms is solved: the result then satisfies the law with a slip term
+/// that differs from μ |u_t| (friction_relaxed).
 
 #pragma once
 
@@ -62,6 +64,8 @@ public:
 
 private:
     void solve_by_newton(const ConeProblem& problem, Iterate& x, double tolerance);
+    void solve_by_cautious_newton(const ConeProblem& problem, Iterate& x, double tolerance,
+                                  double last_tolerance);
     void solve_from_interior_point(const ConeProblem& problem, Iterate& x, double tolerance);
     void solve_by_fixed_point(const ConeProblem& problem, Iterate& x, double tolerance);
     void solve_relaxed(const ConeProblem& problem, const Iterate& x);

@@ -74,9 +74,11 @@ ConeSolver::Outcome ConeSolver::solve(const ConeProblem& problem, Iterate& x, co
             solve_by_newton(problem, x, aim);
             if (!(x.residual <= enough)) solve_by_cautious_newton(problem, x, aim, fair);
             // An accelerated iteration can cycle where the plain one converges slowly.
-            for (const bool accelerates : {false, true})
-                if (!(x.residual <= fair))
-                    count += admm.solve(problem, matrix, x, {aim, aim, aim}, most_patient_admm, accelerates);
+            for (const bool accelerates : {false, true}) {
+                if (x.residual <= fair) break;
+                count += admm.solve(problem, matrix, x, {aim, aim, aim}, most_patient_admm, accelerates);
+                if (!(x.residual <= fair)) solve_by_cautious_newton(problem, x, aim, fair);
+            }
             if (!(x.residual <= fair)) solve_from_interior_point(problem, x, aim);
             if (!(x.residual <= fair)) solve_by_fixed_point(problem, x, aim);
         } catch (const NumericalFailure&) {

@@ -6,7 +6,7 @@
 /// 2. ADMM with Anderson acceleration, up to 300 iterations.
 /// 3. A few steps of the proximal Newton method for Coulomb's law from the result of 2.
 /// 4. The same with larger proximal terms, which are reduced slowly: up to 400 factorisations.
-/// 5. ADMM with up to 3000 iterations, then again with acceleration.
+/// 5. ADMM with up to 3000 iterations, then again with acceleration, each followed by 4.
 /// 6. Newton's method from the solution of the convex problem without slip terms, by the interior point
 ///    method.
 /// 7. Up to 20 passes of the fixed point s ← μ |u_t| of the convex problems, with Anderson
@@ -51,8 +51,8 @@ public:
     void set_velocities(const ConeProblem& problem, Iterate& x);
     /// Residuals [m/s]
     struct Tolerances {
-        double start;   ///< of the impulses of x that are taken as they are
-        double result;  ///< of ADMM
+        double start = 0;   ///< of the impulses of x that are taken as they are
+        double result = 0;  ///< of ADMM
         double acceptable = 1e-6;
     };
     /// Solves the problem from the impulses of x, one for each contact point, to the tolerances or to

@@ -82,8 +82,8 @@ const Eigen::VectorXd& ContactStep::solve(bool first, const Eigen::VectorXd& rig
     problem.nu = right.tail(problem.nu.size()) / h;
     if (first) start();
     // A later call changes the right side only. The impulses remain if they are as good as before.
-    const double of_start = first ? start_tolerance : std::max(tolerance, 2 * residual);
-    const ConeSolver::Outcome outcome = solve_with_rebounds(of_start);
+    if (!first) start_tolerance.assign(contacts.cone.size(), std::max(tolerance, 2 * residual));
+    const ConeSolver::Outcome outcome = solve_with_rebounds();
     if (outcome.status == ConeSolver::Status::failed) fail(outcome);
     residual = outcome.residual;
     is_relaxed = outcome.status == ConeSolver::Status::friction_relaxed;
@@ -110,7 +110,7 @@ void ContactStep::start()
     }
     solver.start(problem);
     set_rebounds();
-    start_tolerance = is_steady() ? tolerance : unsteady * tolerance;
+    set_start_tolerances();
 }
 
 void ContactStep::set_rebounds()
@@ -155,12 +155,12 @@ double ContactStep::work()
 
 /// The solution with the largest restitution by which the impulses do no work, up to 10⁻³ of the work that
 /// the given coefficients do
-ConeSolver::Outcome ContactStep::solve_with_rebounds(double of_start)
+ConeSolver::Outcome ContactStep::solve_with_rebounds()
 {
-    const auto solve_with = [&](double start) {
-        return solver.solve(problem, iterate, {.start = start, .result = tolerance});
+    const auto solve_again = [&] {
+        return solver.solve(problem, iterate, start_tolerance, {.result = tolerance});
     };
-    ConeSolver::Outcome outcome = solve_with(of_start);
+    ConeSolver::Outcome outcome = solve_again();
     if (!rebounds || is_reduced || outcome.status == ConeSolver::Status::failed) return outcome;
     double energy = 0;  // that the impulses exchange, the scale of rounding errors
     for (int c = 0; c < problem.contacts(); ++c)
@@ -168,12 +168,13 @@ ConeSolver::Outcome ContactStep::solve_with_rebounds(double of_start)
     const double at_full = work();
     if (!(at_full > negligible_work * energy)) return outcome;
     is_reduced = true;
+    start_tolerance.assign(contacts.cone.size(), unsteady * tolerance);
     double low = 0, high = 1, at_high = at_full, at_low = 0;
     for (int k = 0; k < most_reductions; ++k) {
         // first the plastic impact, then regula falsi, shifted to the side of a loss
         const double factor = k == 0 ? 0 : low + 0.99 * (high - low) * at_low / (at_low - at_high);
         set_restitution(factor);
-        outcome = solve_with(unsteady * tolerance);
+        outcome = solve_again();
         if (outcome.status == ConeSolver::Status::failed) return outcome;
         const double now = work();
         if (now > 0) {
@@ -185,21 +186,23 @@ ConeSolver::Outcome ContactStep::solve_with_rebounds(double of_start)
         if (k == 0 && at_low == 0) return outcome;  // also the plastic impact does no work
     }
     set_restitution(low);
-    return solve_with(unsteady * tolerance);
+    return solve_again();
 }
 
-/// Whether the last step has left the velocities of the contact points unchanged, except the tangential ones
-/// of sliding. If not, its impulses contain those that have stopped the bodies. They are not those of this
-/// step even if the velocity that they cause is within the tolerance, and would start the bodies again.
-bool ContactStep::is_steady()
+/// The tolerance of the contact law for a contact point whose velocity the last step has left unchanged,
+/// except the tangential one of sliding, and less for the others. The impulses of the last step contain those
+/// that have stopped them. They are not those of this step even if the velocity that they cause is within the
+/// tolerance, and would start the bodies again.
+void ContactStep::set_start_tolerances()
 {
     for (size_t i = 0; i < x_n->body.size(); ++i)
         y_n.segment<6>(6 * i) << h * x_n->body[i].rddot, h * x_n->body[i].omegadot_bar;
+    start_tolerance.resize(contacts.cone.size());
     for (int c = 0; c < problem.contacts(); ++c) {
         const Vec3 change = problem.u(c, y_n);
-        if ((slipped[c] ? std::abs(change[0]) : change.norm()) > steady * tolerance) return false;
+        const bool is_steady = (slipped[c] ? std::abs(change[0]) : change.norm()) <= steady * tolerance;
+        start_tolerance[c] = is_steady ? tolerance : unsteady * tolerance;
     }
-    return true;
 }
 
 /// Rounding error of a gap, from the coordinates of the bodies [m]

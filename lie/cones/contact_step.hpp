@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "lie/cones/cone_solver.hpp"
+#include "lie/cones/cone_islands.hpp"
 #include "lie/state.hpp"
 #include "lie/statistics.hpp"
 
@@ -68,10 +68,10 @@ public:
 private:
     void start();
     void set_rebounds();
-    ConeSolver::Outcome solve_with_rebounds(double of_start);
+    ConeSolver::Outcome solve_with_rebounds();
     double work();
     void set_restitution(double factor);
-    bool is_steady();
+    void set_start_tolerances();
     double rounding_of_gap(const ConeRows::Cone& cone) const;
     [[noreturn]] void fail(const ConeSolver::Outcome& outcome) const;
 
@@ -84,7 +84,7 @@ private:
     int rounds = 0;             ///< number of these solutions
     std::vector<char> slipped;  ///< whether each contact point slipped in the last step
     ConeProblem problem;
-    ConeSolver solver;
+    ConeIslands solver;
     ConeSolver::Iterate iterate, without_contacts;
     Eigen::VectorXd y_n;
     std::vector<double> rebound;  ///< e u_n(v_n) of the contact points that close with e > 0, else 0 [m/s]
@@ -93,7 +93,7 @@ private:
     State reaching;               ///< x_n with the velocities of add_missed()
     const State* x_n = nullptr;
     double h = 0;
-    double start_tolerance = 0;
+    std::vector<double> start_tolerance;  ///< of the first impulses, for each contact point [m/s]
     double residual = 0, worst_residual = 0;
     bool is_relaxed = false;  ///< whether the last solution has the status friction_relaxed
     long relaxed_steps = 0, reduced_steps = 0;

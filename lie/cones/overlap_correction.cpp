@@ -58,7 +58,10 @@ bool OverlapCorrection::correct(State& x, double h)
         for (int c = 0; c < problem.contacts(); ++c) problem.beta[c] = contacts.cone[c].gap;
         of_positions.start(problem);
         const double overlap = allowed * size;
-        if (of_positions.solve(problem, iterate, {of_tolerance * overlap, of_tolerance * overlap, overlap})
+        start_tolerance.assign(contacts.cone.size(), of_tolerance * overlap);
+        if (of_positions
+                .solve(problem, iterate, start_tolerance,
+                       {.result = of_tolerance * overlap, .acceptable = overlap})
                 .status != ConeSolver::Status::solved)
             return false;
         move(x);

@@ -9,7 +9,7 @@
 
 #pragma once
 
-#include "lie/cones/cone_solver.hpp"
+#include "lie/cones/cone_islands.hpp"
 #include "lie/state.hpp"
 
 namespace hilda::lie {
@@ -33,7 +33,7 @@ public:
 
     /// Largest overlap after a correction, relative to Cone::size
     double remaining() const { return remaining_overlap; }
-    const ConeSolver& solver() const { return of_positions; }
+    const ConeIslands& solver() const { return of_positions; }
 
 private:
     void move(State& x) const;
@@ -45,9 +45,10 @@ private:
     ConeRows overlapping;  ///< contact points that overlap
     ConeRows before;       ///< those of the last correction, with the gaps after it
     ConeProblem problem;
-    ConeSolver of_positions;
-    ConeSolver::Iterate iterate;
-    bool is_found = false;  ///< contacts are those of find()
+    ConeIslands of_positions;
+    ConeIslands::Iterate iterate;
+    std::vector<double> start_tolerance;  ///< of each contact point [m]
+    bool is_found = false;                ///< contacts are those of find()
     double remaining_overlap = 0;
 };
 

@@ -15,12 +15,50 @@ namespace {
 
 // A pivot joins the front before it if that adds at most so many rows of zeros to the front.
 constexpr int most_zero_rows = 4;
+// Fronts with so many columns of four numbers in a column are eliminated by four pivots together.
+constexpr int least_of_four = 8;
 
 /// The product without the rules of C for numbers that are not finite
 double product(double a, double b) { return a * b; }
 std::complex<double> product(const std::complex<double>& a, const std::complex<double>& b)
 {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+using FourNumbers = Eigen::Array<double, 4, 1>;
+
+/// to -= Σ u_m l_m for the columns of numbers from `begin` to `end`, in the order of m
+void subtract_from_one(int begin, int end, const FourNumbers* const* l, const FourNumbers& u,
+                       FourNumbers* __restrict to)
+{
+    const FourNumbers *const l_0 = l[0], *const l_1 = l[1], *const l_2 = l[2], *const l_3 = l[3];
+    const double u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+    for (int c = begin; c < end; ++c) {
+        FourNumbers sum = to[c];
+        sum -= u_0 * l_0[c];
+        sum -= u_1 * l_1[c];
+        sum -= u_2 * l_2[c];
+        sum -= u_3 * l_3[c];
+        to[c] = sum;
+    }
+}
+
+/// The same for two columns, which share the loads of l
+void subtract_from_two(int begin, int end, const FourNumbers* const* l, const FourNumbers& u,
+                       const FourNumbers& v, FourNumbers* __restrict to, FourNumbers* __restrict next)
+{
+    const FourNumbers *const l_0 = l[0], *const l_1 = l[1], *const l_2 = l[2], *const l_3 = l[3];
+    const double u_0 = u[0], u_1 = u[1], u_2 = u[2], u_3 = u[3];
+    const double v_0 = v[0], v_1 = v[1], v_2 = v[2], v_3 = v[3];
+    for (int c = begin; c < end; ++c) {
+        const FourNumbers a = l_0[c], b = l_1[c], d = l_2[c], e = l_3[c];
+        FourNumbers sum = to[c], other = next[c];
+        sum -= u_0 * a, other -= v_0 * a;
+        sum -= u_1 * b, other -= v_1 * b;
+        sum -= u_2 * d, other -= v_2 * d;
+        sum -= u_3 * e, other -= v_3 * e;
+        to[c] = sum, next[c] = other;
+    }
 }
 
 }  // namespace
@@ -105,8 +143,8 @@ std::vector<int> MultifrontalLu<Scalar>::find_fronts(const std::vector<std::vect
                 static_cast<int>(std::lower_bound(begin, begin + parent.size, border[k]) - begin);
     }
     number.assign(end, Column::Zero());
-    l.assign(static_cast<size_t>(most_columns), Column::Zero());
-    i_l = l;
+    l.assign(4 * static_cast<size_t>(most_columns), Column::Zero());
+    i_l.assign(static_cast<size_t>(most_columns), Column::Zero());
     pivot.assign(static_cast<size_t>(n), 0);
     inverse = pivot;
     b_ordered.setZero(n);
@@ -138,31 +176,92 @@ void MultifrontalLu<Scalar>::factor()
 template <class Scalar>
 void MultifrontalLu<Scalar>::eliminate(const Front& f)
 {
+    int k = 0;
+    if constexpr (std::is_same_v<Scalar, double>)
+        if (f.columns >= least_of_four)
+            for (; k + 4 <= f.pivots; k += 4) eliminate_four(f, k);
+    for (; k < f.pivots; ++k) eliminate_one(f, k);
+}
+
+template <class Scalar>
+void MultifrontalLu<Scalar>::eliminate_one(const Front& f, int k)
+{
     Scalar* const F = numbers(f);
     Column* const columns = number.data() + f.at;
     const int stride = f.columns * scalars;
     Scalar* const L = reinterpret_cast<Scalar*>(l.data());
-    for (int k = 0; k < f.pivots; ++k) {
-        Scalar* const column = F + static_cast<size_t>(k) * stride;
-        const Scalar p = column[k], by_p = 1. / p;
-        pivot[f.first + k] = p;
-        inverse[f.first + k] = by_p;
-        const int begin = (k + 1) / scalars;
-        for (int i = begin * scalars; i <= k; ++i) L[i] = 0;
-        for (int i = k + 1; i < f.size; ++i) L[i] = column[i] = product(column[i], by_p);
-        for (int i = f.size; i < stride; ++i) L[i] = 0;
-        if constexpr (!std::is_same_v<Scalar, double>) {
-            Scalar* const i_L = reinterpret_cast<Scalar*>(i_l.data());
-            for (int i = begin * scalars; i < stride; ++i) i_L[i] = {-L[i].imag(), L[i].real()};
+    Scalar* const column = F + static_cast<size_t>(k) * stride;
+    const Scalar p = column[k], by_p = 1. / p;
+    pivot[f.first + k] = p;
+    inverse[f.first + k] = by_p;
+    const int begin = (k + 1) / scalars;
+    for (int i = begin * scalars; i <= k; ++i) L[i] = 0;
+    for (int i = k + 1; i < f.size; ++i) L[i] = column[i] = product(column[i], by_p);
+    for (int i = f.size; i < stride; ++i) L[i] = 0;
+    if constexpr (!std::is_same_v<Scalar, double>) {
+        Scalar* const i_L = reinterpret_cast<Scalar*>(i_l.data());
+        for (int i = begin * scalars; i < stride; ++i) i_L[i] = {-L[i].imag(), L[i].real()};
+    }
+    for (int j = k + 1; j < f.size; ++j) {
+        const Scalar u = F[static_cast<size_t>(j) * stride + k];
+        if (u == Scalar(0)) continue;
+        Column* const to = columns + static_cast<size_t>(j) * f.columns;
+        if constexpr (std::is_same_v<Scalar, double>)
+            for (int c = begin; c < f.columns; ++c) to[c] -= u * l[c];
+        else
+            for (int c = begin; c < f.columns; ++c) to[c] -= u.real() * l[c] + u.imag() * i_l[c];
+    }
+}
+
+/// Pivots k to k + 3 with one pass over the columns behind them, which are then read from memory once: large
+/// fronts do not fit into the caches. The operations on each number and their order are those of
+/// eliminate_one().
+template <class Scalar>
+void MultifrontalLu<Scalar>::eliminate_four(const Front& f, int k)
+{
+    if constexpr (std::is_same_v<Scalar, double>) {
+        double* const F = numbers(f);
+        Column* const columns = number.data() + f.at;
+        const int stride = f.columns * scalars, begin = (k + 1) / scalars;
+        const Column* l_of[4];
+        const double* L_of[4];
+        for (int m = 0; m < 4; ++m) {
+            const int of = k + m;
+            double* const column = F + static_cast<size_t>(of) * stride;
+            Column* const to = columns + static_cast<size_t>(of) * f.columns;
+            for (int before = 0; before < m; ++before) {
+                const double u = column[k + before];
+                for (int c = begin; c < f.columns; ++c) to[c] -= u * l_of[before][c];
+            }
+            const double p = column[of], by_p = 1. / p;
+            pivot[f.first + of] = p;
+            inverse[f.first + of] = by_p;
+            l_of[m] = l.data() + static_cast<size_t>(m) * f.columns;
+            double* const L = reinterpret_cast<double*>(l.data()) + static_cast<size_t>(m) * stride;
+            L_of[m] = L;
+            for (int i = begin * scalars; i <= of; ++i) L[i] = 0;
+            for (int i = of + 1; i < f.size; ++i) L[i] = column[i] = column[i] * by_p;
+            for (int i = f.size; i < stride; ++i) L[i] = 0;
         }
-        for (int j = k + 1; j < f.size; ++j) {
-            const Scalar u = F[static_cast<size_t>(j) * stride + k];
-            if (u == Scalar(0)) continue;
+        // the entries of U in a column, each with the subtractions of the pivots before it
+        const auto u_of = [&](const double* column) {
+            Column u;
+            u[0] = column[k];
+            u[1] = column[k + 1] - u[0] * L_of[0][k + 1];
+            u[2] = column[k + 2] - u[0] * L_of[0][k + 2] - u[1] * L_of[1][k + 2];
+            u[3] = column[k + 3] - u[0] * L_of[0][k + 3] - u[1] * L_of[1][k + 3] - u[2] * L_of[2][k + 3];
+            return u;
+        };
+        for (int j = k + 4; j < f.size; j += 2) {
+            const bool two = j + 1 < f.size;
+            const Column u = u_of(F + static_cast<size_t>(j) * stride);
+            const Column v = two ? u_of(F + static_cast<size_t>(j + 1) * stride) : Column::Zero();
+            if ((u == 0).all() && (v == 0).all()) continue;
             Column* const to = columns + static_cast<size_t>(j) * f.columns;
-            if constexpr (std::is_same_v<Scalar, double>)
-                for (int c = begin; c < f.columns; ++c) to[c] -= u * l[c];
+            if (two)
+                subtract_from_two(begin, f.columns, l_of, u, v, to, to + f.columns);
             else
-                for (int c = begin; c < f.columns; ++c) to[c] -= u.real() * l[c] + u.imag() * i_l[c];
+                subtract_from_one(begin, f.columns, l_of, u, to);
         }
     }
 }

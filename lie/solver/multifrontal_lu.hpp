@@ -82,6 +82,8 @@ private:
     /// Returns the front of each pivot. `below`: the unknowns below each pivot
     std::vector<int> find_fronts(const std::vector<std::vector<int>>& below);
     void eliminate(const Front& f);
+    void eliminate_one(const Front& f, int k);
+    void eliminate_four(const Front& f, int k);
     void add_to_parent(const Front& f);
 
     BlockEntries entries;
@@ -93,7 +95,7 @@ private:
     std::vector<int> unknown_of;       ///< by front: places, ascending
     std::vector<int> index_in_parent;  ///< by front: of its unknowns; -1 for the pivots
     std::vector<Column> number;        ///< the fronts
-    std::vector<Column> l, i_l;        ///< a column of L, and i times it
+    std::vector<Column> l, i_l;        ///< four columns of L, and i times one column
     std::vector<Scalar> pivot, inverse;
     Vector b_ordered, part;  ///< workspace of solve()
     long count = 0;

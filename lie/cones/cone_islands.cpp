@@ -134,8 +134,21 @@ void ConeIslands::remove(std::unique_ptr<Island>& island)
     island.reset();
 }
 
+int ConeIslands::island(int contact) const
+{
+    if (number < 2) return 0;
+    const ConeRows::Cone& cone = (*of->cones)[contact];
+    return number_of[cone.i >= 0 ? cone.i : cone.j];
+}
+
+double ConeIslands::residual(int contact) const
+{
+    return number < 2 ? residual_of_whole : present[island(contact)]->residual;
+}
+
 void ConeIslands::start(ConeProblem& problem)
 {
+    of = &problem;
     whole.start(problem);
     find_islands(problem);
     for (std::unique_ptr<Island>& island : kept)
@@ -148,7 +161,9 @@ ConeIslands::Outcome ConeIslands::solve(const ConeProblem& problem, Iterate& x, 
 {
     if (number < 2) {
         to.start = *std::min_element(start.begin(), start.end());
-        return whole.solve(problem, x, to);
+        const Outcome outcome = whole.solve(problem, x, to);
+        residual_of_whole = outcome.residual;
+        return outcome;
     }
     whole.set_velocities(problem, x);
     x.offset.resize(x.p.size());
@@ -179,6 +194,7 @@ ConeIslands::Outcome ConeIslands::solve(const ConeProblem& problem, Island& of, 
         of.x.p[c] = x.p[of.contacts[c]];
     }
     const Outcome outcome = of.solver.solve(of.problem, of.x, to);
+    of.residual = outcome.residual;
     for (int b = 0; b < n; ++b) x.y.segment<6>(6 * of.bodies[b]) = of.x.y.segment<6>(6 * b);
     for (size_t k = 0; k < of.joint_rows.size(); ++k)
         x.y[rows_at + of.joint_rows[k]] = of.x.y[6 * n + static_cast<Eigen::Index>(k)];

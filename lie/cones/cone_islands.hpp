@@ -3,8 +3,8 @@
 ///
 /// The ground does not connect bodies. The problem of each island has its own matrix, penalty, acceleration
 /// and iteration: islands at rest need no iteration while others move, and an island does not depend on the
-/// others. The velocities of bodies without contact points follow from the joints alone. If all contact
-/// points belong to one island, the problem is solved as a whole.
+/// others. The velocities of bodies without contact points follow from the joints alone, whose matrix is
+/// factored as a whole. If all contact points belong to one island, the problem is solved as a whole.
 
 #pragma once
 
@@ -34,6 +34,8 @@ public:
                   ConeSolver::Tolerances to);
 
     int islands() const { return number; }  ///< with contact points
+    int island(int contact) const;          ///< of a contact point, from 0
+    double residual(int contact) const;     ///< of its island in the last solution [m/s]
     long iterations() const;
     long factorizations() const;
 
@@ -49,7 +51,8 @@ private:
         ConeProblem problem;
         ConeSolver solver;
         Iterate x;
-        int unused = 0;  ///< number of calls of start() since the last one with this island
+        double residual = 0;  ///< of the last solution [m/s]
+        int unused = 0;       ///< number of calls of start() since the last one with this island
     };
     void find_islands(const ConeProblem& problem);
     void take_islands(const ConeProblem& problem);
@@ -58,7 +61,9 @@ private:
     Outcome solve(const ConeProblem& problem, Island& of, Iterate& x, const ConeSolver::Tolerances& to);
 
     const Rows& pattern;
+    const ConeProblem* of = nullptr;  ///< the problem of start()
     ConeSolver whole;
+    double residual_of_whole = 0;
     int number = 0;
     std::vector<int> parent;                     ///< of each body, for the search
     std::vector<int> number_of;                  ///< island of a body; -1 without contact points

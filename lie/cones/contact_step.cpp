@@ -82,7 +82,9 @@ const Eigen::VectorXd& ContactStep::solve(bool first, const Eigen::VectorXd& rig
     problem.nu = right.tail(problem.nu.size()) / h;
     if (first) start();
     // A later call changes the right side only. The impulses remain if they are as good as before.
-    if (!first) start_tolerance.assign(contacts.cone.size(), std::max(tolerance, 2 * residual));
+    if (!first)
+        for (int c = 0; c < problem.contacts(); ++c)
+            start_tolerance[c] = std::max(tolerance, 2 * solver.residual(c));
     const ConeSolver::Outcome outcome = solve_with_rebounds();
     if (outcome.status == ConeSolver::Status::failed) fail(outcome);
     residual = outcome.residual;
@@ -132,29 +134,32 @@ void ContactStep::set_rebounds()
         }
         if (!(problem.u(c, without_contacts.y)[0] + cone.gap / h < 0)) continue;
         rebound[c] = cone.restitution * approach;
+        problem.beta[c] = rebound[c];
         rebounds = true;
     }
-    set_restitution(1);
 }
 
-/// β of the contact points that rebound, with a factor of their coefficients
-void ContactStep::set_restitution(double factor)
+/// β of the contact points of an island that rebound, with a factor of their coefficients
+void ContactStep::set_rebounds_of(int island, double factor)
 {
     for (int c = 0; c < problem.contacts(); ++c)
-        if (rebound[c] < 0) problem.beta[c] = factor * rebound[c];
+        if (rebound[c] < 0 && solver.island(c) == island) problem.beta[c] = factor * rebound[c];
 }
 
-/// Σ p_c · (u_c⁻ + u_c⁺)/2 [J]
-double ContactStep::work()
+/// Σ p_c · (u_c⁻ + u_c⁺)/2 of each island [J]
+void ContactStep::set_work()
 {
-    double sum = 0;
-    for (int c = 0; c < problem.contacts(); ++c)
-        sum += 0.5 * iterate.p[c].dot(problem.u(c, iterate.y) + problem.u(c, without_contacts.y));
-    return sum;
+    for (Island& island : islands) island.work = island.scale = 0;
+    for (int c = 0; c < problem.contacts(); ++c) {
+        const Vec3 before = problem.u(c, without_contacts.y);
+        Island& of = islands[solver.island(c)];
+        of.work += 0.5 * iterate.p[c].dot(problem.u(c, iterate.y) + before);
+        of.scale += iterate.p[c].norm() * before.norm();
+    }
 }
 
-/// The solution with the largest restitution by which the impulses do no work, up to 10⁻³ of the work that
-/// the given coefficients do
+/// The solution with the largest restitution of each island by which its impulses do no work, up to 10⁻³ of
+/// the work that the given coefficients do
 ConeSolver::Outcome ContactStep::solve_with_rebounds()
 {
     const auto solve_again = [&] {
@@ -162,30 +167,45 @@ ConeSolver::Outcome ContactStep::solve_with_rebounds()
     };
     ConeSolver::Outcome outcome = solve_again();
     if (!rebounds || is_reduced || outcome.status == ConeSolver::Status::failed) return outcome;
-    double energy = 0;  // that the impulses exchange, the scale of rounding errors
-    for (int c = 0; c < problem.contacts(); ++c)
-        energy += iterate.p[c].norm() * problem.u(c, without_contacts.y).norm();
-    const double at_full = work();
-    if (!(at_full > negligible_work * energy)) return outcome;
-    is_reduced = true;
+    islands.assign(std::max(1, solver.islands()), {});
+    set_work();
+    for (Island& island : islands) {
+        if (!(island.work > negligible_work * island.scale)) continue;
+        island.searches = is_reduced = true;
+        island.at_full = island.at_high = island.work;
+    }
+    if (!is_reduced) return outcome;
     start_tolerance.assign(contacts.cone.size(), unsteady * tolerance);
-    double low = 0, high = 1, at_high = at_full, at_low = 0;
+    const auto number_of = [&](const Island& island) { return static_cast<int>(&island - islands.data()); };
     for (int k = 0; k < most_reductions; ++k) {
-        // first the plastic impact, then regula falsi, shifted to the side of a loss
-        const double factor = k == 0 ? 0 : low + 0.99 * (high - low) * at_low / (at_low - at_high);
-        set_restitution(factor);
+        bool any = false;
+        for (Island& island : islands) {
+            if (!island.searches) continue;
+            // first the plastic impact, then regula falsi, shifted to the side of a loss
+            if (k > 0)
+                island.factor = island.low + 0.99 * (island.high - island.low) * island.at_low /
+                                                 (island.at_low - island.at_high);
+            set_rebounds_of(number_of(island), island.factor);
+            any = true;
+        }
+        if (!any) return outcome;
         outcome = solve_again();
         if (outcome.status == ConeSolver::Status::failed) return outcome;
-        const double now = work();
-        if (now > 0) {
-            high = factor, at_high = now;
-        } else {
-            low = factor, at_low = now;
-            if (k > 0 && -now <= accurate_work * at_full) return outcome;
+        set_work();
+        for (Island& island : islands) {
+            if (!island.searches) continue;
+            if (island.work > 0) {
+                island.high = island.factor, island.at_high = island.work;
+            } else {
+                island.low = island.factor, island.at_low = island.work;
+                if (k > 0 && -island.work <= accurate_work * island.at_full) island.searches = false;
+            }
+            if (k == 0 && island.at_low == 0)
+                island.searches = false;  // also the plastic impact does no work
         }
-        if (k == 0 && at_low == 0) return outcome;  // also the plastic impact does no work
     }
-    set_restitution(low);
+    for (const Island& island : islands)
+        if (island.searches) set_rebounds_of(number_of(island), island.low);
     return solve_again();
 }
 

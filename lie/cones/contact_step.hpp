@@ -29,12 +29,12 @@ class System;
 /// approaching velocity is that after the first one.
 ///
 /// Newton's law with friction or with different coefficients can increase the energy (Stronge, 1990). The
-/// coefficients of the step are then reduced by a common factor s, the largest one by which the impulses do
+/// coefficients of an island are then reduced by a common factor s, the largest one by which its impulses do
 /// no work:
 ///
 ///     Σ p_c · (u_c⁻ + u_c⁺)/2 ≤ 0,     u⁻ without contacts,     e → s e,  0 ≤ s ≤ 1
 ///
-/// With s = 0 their work is not positive.
+/// With s = 0 their work is not positive. Other islands keep their coefficients.
 class ContactStep {
 public:
     /// `tolerance`: of the contact law [m/s]. `scheme`: its name, for messages
@@ -69,8 +69,8 @@ private:
     void start();
     void set_rebounds();
     ConeSolver::Outcome solve_with_rebounds();
-    double work();
-    void set_restitution(double factor);
+    void set_work();
+    void set_rebounds_of(int island, double factor);
     void set_start_tolerances();
     double rounding_of_gap(const ConeRows::Cone& cone) const;
     [[noreturn]] void fail(const ConeSolver::Outcome& outcome) const;
@@ -90,7 +90,17 @@ private:
     std::vector<double> rebound;  ///< e u_n(v_n) of the contact points that close with e > 0, else 0 [m/s]
     bool rebounds = false;        ///< whether there are any
     bool is_reduced = false;      ///< whether their coefficients were reduced
-    State reaching;               ///< x_n with the velocities of add_missed()
+    /// Search for the factor s of an island
+    struct Island {
+        double work = 0, scale = 0;      ///< of the impulses; the energy that they exchange [J]
+        double factor = 0;               ///< the present one
+        double low = 0, high = 1;        ///< factors without and with positive work
+        double at_low = 0, at_high = 0;  ///< their work [J]
+        double at_full = 0;              ///< that of the given coefficients [J]
+        bool searches = false;
+    };
+    std::vector<Island> islands;
+    State reaching;  ///< x_n with the velocities of add_missed()
     const State* x_n = nullptr;
     double h = 0;
     std::vector<double> start_tolerance;  ///< of the first impulses, for each contact point [m/s]

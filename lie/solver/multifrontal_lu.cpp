@@ -214,8 +214,7 @@ void MultifrontalLu<Scalar>::eliminate_one(const Front& f, int k)
 }
 
 /// Pivots k to k + 3 with one pass over the columns behind them, which are then read from memory once: large
-/// fronts do not fit into the caches. The operations on each number and their order are those of
-/// eliminate_one().
+/// fronts do not fit into the caches. The result is that of eliminate_one() to rounding.
 template <class Scalar>
 void MultifrontalLu<Scalar>::eliminate_four(const Front& f, int k)
 {

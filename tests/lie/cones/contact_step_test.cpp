@@ -142,3 +142,31 @@ TEST_CASE("an impact with friction does not increase the energy", "[lie][cones]"
     }
     CHECK(reduced >= 3);
 }
+
+TEST_CASE("an impact that would increase the energy leaves the rebounds of other bodies unchanged",
+          "[lie][cones]")
+{
+    // the corners of the test before, each with a ball that bounces far away from it
+    tests::Random random(11);
+    long reduced = 0;
+    for (int n = 0; n < 300; ++n) {
+        tests::ContactSystem system;
+        system.gravity.setZero();
+        const Vec3 half(0.1, 0.04, 0.3);
+        const lie::Mat3 A = lie::exp(3 * random.vector());
+        const Vec3 corner = A.transpose() * Vec3(0, 0, -0.2);
+        system.add_box(1, half, {0, 0, 0.2 + 1e-12}, A);
+        system.vertices.push_back({0, -1, corner + 0.1 * random.vector(), Vec3::UnitZ(), 0, 1, 0.9});
+        system.add_sphere(1, 0.1, {5, 0, 1e-9});
+        system.vertices.push_back({1, -1, Vec3::Zero(), Vec3::UnitZ(), 0, 0, 0.8});
+        lie::State x = system.start();
+        x.body[0].r.z() -= tests::ContactSystem::point(x, 0, system.vertices[0].s_bar).z() - 1e-9;
+        x.body[0].rdot = random.vector(), x.body[0].omega_bar = 5 * random.vector();
+        x.body[1].rdot = Vec3(0, 0, -1);
+        const auto integrator = lie::scheme("rA-moreau-1").make(system, {});
+        integrator->step(x, 1e-5);
+        reduced += integrator->statistics().restitution_reduced;
+        CHECK(x.body[1].rdot.z() == Approx(0.8).epsilon(1e-9));
+    }
+    CHECK(reduced >= 3);
+}

@@ -5,7 +5,6 @@
 #include "contact/surfaces/cylinder.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/polytope.hpp"
-#include "contact/surfaces/sphere.hpp"
 #include "lie/check.hpp"
 
 #include <algorithm>
@@ -56,12 +55,6 @@ void check_shape(const Shape& shape)
         lie::reject(where, "the orientation of a surface must be a rotation", "a reflection");
 }
 
-/// Whether the surface is a polytope or a ball
-bool has_core(const Shape& s)
-{
-    return surface_as<Polytope>(s) != nullptr || (surface_as<Sphere>(s) != nullptr && s.surface->sigma() > 0);
-}
-
 std::string names(const Shape& i, const Shape& j)
 {
     const auto named = [](const Shape& s) {
@@ -78,11 +71,14 @@ void check_pair(const Shape& i, const Shape& j)
         const bool a_is_plane = surface_as<Plane>(*a) != nullptr,
                    b_is_plane = surface_as<Plane>(*b) != nullptr;
         const bool is_polytope = surface_as<Polytope>(*a) != nullptr;
-        if (is_polytope && !b_is_plane && !has_core(*b))
-            lie::reject(where,
-                        "a " + a->surface->name() +
-                            " can be paired with a plane, sphere, box, capsule, polygon or convex",
-                        names(i, j));
+        if (is_polytope && !b_is_plane && surface_as<Polytope>(*b) == nullptr &&
+            !is_smooth_convex_body(*b->surface))
+            lie::reject(
+                where,
+                "a " + a->surface->name() +
+                    " can be paired with a plane, sphere, box, capsule, polygon, convex, ellipsoid or "
+                    "superquadric",
+                names(i, j));
         if (!a->surface->is_smooth() && !is_polytope && !b_is_plane)
             lie::reject(where, "a " + a->surface->name() + " can be paired with a plane only", names(i, j));
         if (a_is_plane && (b_is_plane || surface_as<Cylinder>(*b) != nullptr))
@@ -121,8 +117,8 @@ std::unique_ptr<Detector> make_detector(const Shape& i, const Shape& j)
 {
     check_shape(i), check_shape(j);
     check_pair(i, j);
-    for (const auto make : {polytope_plane, polytope_polytope, sphere_plane, sphere_sphere, foot_plane,
-                            disk_plane, cylinder_cylinder, support_plane, common_normal}) {
+    for (const auto make : {polytope_plane, polytope_polytope, polytope_smooth, sphere_plane, sphere_sphere,
+                            foot_plane, disk_plane, cylinder_cylinder, support_plane, common_normal}) {
         if (auto detector = make(i, j)) return detector;
         if (auto detector = make(j, i)) return std::make_unique<ExchangedDetector>(std::move(detector));
     }

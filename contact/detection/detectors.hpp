@@ -28,6 +28,9 @@ const S* surface_as(const Shape& shape)
 ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion& bj,
                               const PreviousPoints* from);
 
+/// Whether a surface is that of a bounded convex body without edges that has a support function
+bool is_smooth_convex_body(const Surface& s);
+
 // Each function returns a detector for the surfaces in its name, in this order, and nullptr for other
 // surfaces.
 
@@ -35,6 +38,8 @@ ContactPoint detect_exchanged(const Detector& ji, const Motion& bi, const Motion
 std::unique_ptr<Detector> polytope_plane(const Shape& i, const Shape& j);
 /// Two polytopes, or a polytope and a ball. detect() returns the deepest point.
 std::unique_ptr<Detector> polytope_polytope(const Shape& i, const Shape& j);
+/// A polytope and a smooth convex body other than a ball, such as an ellipsoid
+std::unique_ptr<Detector> polytope_smooth(const Shape& i, const Shape& j);
 std::unique_ptr<Detector> sphere_plane(const Shape& i, const Shape& j);
 /// Two spheres, of which one may be concave. InvalidInput unless the sphere is smaller than the concave one.
 std::unique_ptr<Detector> sphere_sphere(const Shape& i, const Shape& j);

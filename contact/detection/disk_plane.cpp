@@ -4,47 +4,82 @@
 #include "contact/surfaces/plane.hpp"
 #include "lie/check.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace hilda::contact {
 
 namespace {
 
-/// The contact point is the point of the rim farthest along -n. With e the unit vector from the centre to it
-/// and θ the angle between e and -n,
+/// The point of the rim at the angle ψ from the lowest one. With z the axis, e the unit vector from the
+/// centre to the lowest point, θ the angle between e and -n, and t = z × e,
 ///
-///     n - (n·z) z = -cos θ e,   t = z × e,   K_i = (1/R) cos θ (I - n nᵀ)
+///     n - (n·z) z = -cos θ e,   C_i = c + R (cos ψ e + sin ψ t),   K_i = (1/R) cos θ (I - n nᵀ)
 ///
-/// If the disk is parallel to the plane and above it, any point of the rim is returned.
+/// The contact points are those at ψ = k 2π/m, k = 0 ... m - 1, with the feature k. If the disk is parallel
+/// to the plane to rounding, e is a fixed vector of the body: a disk at rest keeps its contact points.
 class DiskPlane final : public Detector {
 public:
     DiskPlane(const Shape& i, double R, const Shape& j)
-        : c_bar_i(i.position), z_bar_i(i.orientation.col(2)), R(R), o_bar_j(j.position),
-          n_bar_j(j.orientation.col(2))
+        : c_bar_i(i.position), x_bar_i(i.orientation.col(0)), z_bar_i(i.orientation.col(2)), R(R),
+          o_bar_j(j.position), n_bar_j(j.orientation.col(2))
     {}
 
+    /// The lowest point. If the disk is parallel to the plane and above it, any point of the rim is returned.
     ContactPoint detect(const Motion& bi, const Motion& bj, const PreviousPoints*) const override
     {
-        const Vec3 c = bi.r + bi.A * c_bar_i, z = bi.A * z_bar_i, n = bj.A * n_bar_j;
-        const Vec3 t_cosine = n.cross(z);  // its length is cos θ, without cancellation at θ = π/2
-        const double cosine = t_cosine.norm();
-        const bool is_tilted = cosine > flat;
-        const Vec3 t = is_tilted ? Vec3(t_cosine / cosine) : z.unitOrthogonal();
-        const Vec3 C_i = c + R * t.cross(z);
-        const double gap = n.dot(C_i - bj.r - bj.A * o_bar_j);
-        if (!is_tilted && !(gap > 0))
+        const Rim rim(*this, bi, bj);
+        ContactPoint lowest = rim.contact_point(1, 0);
+        if (!rim.is_tilted && !(lowest.gap > 0))
             throw NoUniqueContactPoint("a disk lies flat on a plane: the contact is the whole rim");
-        return {.C_i = C_i,
-                .C_j = C_i - gap * n,
-                .n = n,
-                .gap = gap,
-                .K_i = cosine / R * (Mat3::Identity() - n * n.transpose()),
-                .K_j = Mat3::Zero(),
-                .edge_i = t};
+        return lowest;
+    }
+
+    void detect_all(const Motion& bi, const Motion& bj, double reach, Manifold& out) const override
+    {
+        out.clear();
+        const Rim rim(*this, bi, bj);
+        for (std::uint32_t k = 0; k < points; ++k) {
+            const double psi = 2 * std::numbers::pi * k / points;
+            const ContactPoint at = rim.contact_point(std::cos(psi), std::sin(psi));
+            if (at.gap < reach) out.push_back({.at = at, .feature = k});
+        }
     }
 
 private:
     static constexpr double flat = 1e-12;
+    static constexpr std::uint32_t points = Manifold::most;
 
-    const Vec3 c_bar_i, z_bar_i;
+    struct Rim {
+        Vec3 n, c, o, e, t;  ///< o: the origin of the plane
+        double R, cosine;
+        bool is_tilted;
+
+        Rim(const DiskPlane& of, const Motion& bi, const Motion& bj)
+            : n(bj.A * of.n_bar_j), c(bi.r + bi.A * of.c_bar_i), o(bj.r + bj.A * of.o_bar_j), R(of.R)
+        {
+            const Vec3 z = bi.A * of.z_bar_i;
+            const Vec3 t_cosine = n.cross(z);  // its length is cos θ, without cancellation at θ = π/2
+            cosine = t_cosine.norm();
+            is_tilted = cosine > flat;
+            t = is_tilted ? Vec3(t_cosine / cosine) : Vec3(z.cross(bi.A * of.x_bar_i));
+            e = t.cross(z);
+        }
+        ContactPoint contact_point(double cos_psi, double sin_psi) const
+        {
+            const Vec3 C_i = c + R * (cos_psi * e + sin_psi * t);
+            const double gap = n.dot(C_i - o);
+            return {.C_i = C_i,
+                    .C_j = C_i - gap * n,
+                    .n = n,
+                    .gap = gap,
+                    .K_i = cosine / R * (Mat3::Identity() - n * n.transpose()),
+                    .K_j = Mat3::Zero(),
+                    .edge_i = cos_psi * t - sin_psi * e};
+        }
+    };
+
+    const Vec3 c_bar_i, x_bar_i, z_bar_i;
     const double R;
     const Vec3 o_bar_j, n_bar_j;
 };

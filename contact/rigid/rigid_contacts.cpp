@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hilda::contact {
 
@@ -102,8 +103,12 @@ void RigidContacts::detect(const lie::State& x, int i, int j, double reach, Mani
 ContactPoint RigidContacts::nearest(const lie::State& x, int number) const
 {
     const auto [i, j] = of.pair(number);
-    return named(x, i, j,
-                 [&](const Motion& bi, const Motion& bj) { return detector->detect(bi, bj, nullptr); });
+    Manifold all;
+    detect(x, i, j, std::numeric_limits<double>::infinity(), all);
+    return std::min_element(
+               all.begin(), all.end(),
+               [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.at.gap < q.at.gap; })
+        ->at;
 }
 
 /// The pairs that may touch in a step h

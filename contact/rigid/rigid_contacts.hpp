@@ -44,10 +44,9 @@ public:
     Fastest fastest(const lie::State& x) const override;
 
     /// Sets `out` to the contact points of a pair in the state x with the forces of the last step,
-    /// x.cone_forces, and to those within a
-    /// hundredth of the smaller size without a force.
+    /// x.cone_forces, and to those within a hundredth of the smaller size without a force.
     void points(const lie::State& x, int number, std::vector<LoadedPoint>& out) const;
-    /// The closest points of a pair, see Detector::detect()
+    /// The closest points of a pair; one of them if there are several
     ContactPoint nearest(const lie::State& x, int number) const;
     const ContactPairs& pairs() const { return of; }
     /// Calls f(number) for the pairs that have a force in x.cone_forces, ascending.

@@ -33,6 +33,7 @@ public:
     /// Arc length along the rim, 2R asin(chord / 2R) [m]
     double arc(double chord) const override;
     bool is_smooth() const override { return false; }
+    double bounding_radius() const override { return R; }
     bool is_unbounded() const override { return false; }
     PolygonMesh drawing(const DrawingExtent& extent) const override;
 

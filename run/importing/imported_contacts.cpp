@@ -145,15 +145,11 @@ private:
         return !is_jointed_to(a.owner, b.owner) && !is_jointed_to(b.owner, a.owner);
     }
 
-    /// Why a pair has no contact at the start: an overlap, a cylinder on or above a plane with its end
-    /// parallel to it, or poses without a contact point. Empty if it has one or is apart.
+    /// Why a pair has no contact at the start: an overlap, or poses without a contact point. Empty if it has
+    /// one or is apart.
     std::string start_problem(const contact::Detector& detector, const OwnedShape& a,
                               const OwnedShape& b) const
     {
-        constexpr double upright = 1e-3;  // [rad]
-        if ((a.of->type == ImportedShape::disk || b.of->type == ImportedShape::disk) &&
-            a.of->A.col(2).cross(b.of->A.col(2)).norm() < upright)
-            return ": a cylinder that stands on its end";
         const lie::Motion at_a = pose(a.owner), at_b = pose(b.owner);
         const double distance =
             (at_a.r + at_a.A * a.shape.position - at_b.r - at_b.A * b.shape.position).norm();

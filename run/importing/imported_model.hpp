@@ -81,7 +81,7 @@ struct ImportedModel {
 };
 
 /// Adds the two ends of a cylinder about the z axis of `shape`, with a radius and a length [m]. On a plane
-/// the rims are its contact, unless it stands on an end.
+/// the rims are its contact.
 inline void add_cylinder(ImportedModel& model, ImportedShape shape, double radius, double length)
 {
     shape.type = ImportedShape::disk;

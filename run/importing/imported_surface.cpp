@@ -88,9 +88,21 @@ std::string reason_of(const std::exception& error)
 
 void raise_above_floor(ImportedModel& model)
 {
-    for (const ImportedBody& body : model.bodies)
-        if (body.parent < 0 && (body.joints.empty() || body.joints.front().type != ImportedJoint::free))
-            return;
+    // a body that is fixed to the ground, unless it is a link without geometry that carries free bodies
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const ImportedBody& body = model.bodies[b];
+        const auto number = static_cast<int>(b);
+        const auto is_free = [](const ImportedBody& of) {
+            return !of.joints.empty() && of.joints.front().type == ImportedJoint::free;
+        };
+        const bool only_carries =
+            body.joints.empty() &&
+            std::none_of(model.shapes.begin(), model.shapes.end(),
+                         [&](const ImportedShape& shape) { return shape.body == number; }) &&
+            std::all_of(model.bodies.begin(), model.bodies.end(),
+                        [&](const ImportedBody& other) { return other.parent != number || is_free(other); });
+        if (body.parent < 0 && !is_free(body) && !only_carries) return;
+    }
     double lowest = 0;
     for (const ImportedShape& shape : model.shapes) {
         if (shape.body < 0) continue;

@@ -123,14 +123,16 @@ class Import(unittest.TestCase):
                                  '<mesh filename="plate.obj"/>', '<mesh filename="stone.obj" scale="0.1 0.1 0.2"/>')
         text = (f"<robot name='r'><link name='world'/><link name='a'>{INERTIA}{shapes}</link>" + self.FLOATING.format("a", "0 0 0") + "</robot>")
         model, said = self.imported(self.written(text), "--contacts")
-        for expected in ("contact of cylinder of link 'a' with the floor: a cylinder that stands on its end", "mesh package://a/b.stl of link 'a': the place of a package is not known",
+        for expected in ("height of body 'world', which is raised by 0.1 m with all others", "mesh package://a/b.stl of link 'a': the place of a package is not known",
                          "mesh none.stl of link 'a': .*none.stl", "mesh plate.obj of link 'a': "):
             self.assertRegex(said, "not imported: " + expected)
         self.assertEqual(said.count("warning"), 4)
-        surface = model["contacts"][0]["surface_i"]
-        self.assertEqual((len(model["contacts"]), surface["type"], len(surface["vertices"])), (1, "convex", 8))
+        surfaces = [contact["surface_i"] for contact in model["contacts"]]
+        self.assertEqual(sorted(surface["type"] for surface in surfaces), ["convex", "disk", "disk"])
+        surface = next(surface for surface in surfaces if surface["type"] == "convex")
+        self.assertEqual(len(surface["vertices"]), 8)
         self.assertIn([0.1, 0.1, 0.2], surface["vertices"])
-        self.assertAlmostEqual(self.checked_and_run()["a.rz"], 0, delta=1e-9)
+        self.assertAlmostEqual(self.checked_and_run()["a.rz"], 0.1, delta=1e-9)
 
     def test_contacts_of_wheels(self):
         """The rims of a cylinder are its contact on the floor: a cart whose wheels stand at the start rolls as a rigid body does."""
@@ -151,6 +153,17 @@ class Import(unittest.TestCase):
         # five masses of 1 kg and four moments of inertia of 1 kg m²: a = 5 g_x / (5 + 4/R²), R = 0.1 m
         self.assertAlmostEqual(row["cart.vx"], 5 / 405, delta=1e-8)
         self.assertAlmostEqual(row["cart.rz"], 0.2, delta=1e-8)
+
+    def test_contacts_of_a_standing_cylinder(self):
+        shape = self.collisions('<cylinder radius="0.1" length="0.2"/>')
+        text = f"<robot name='r'><link name='a'>{INERTIA}{shape}</link></robot>"
+        model, said = self.imported(self.written(text), "--contacts", "--base", "free")
+        self.assertIn("raised by 0.1 m", said)
+        self.assertEqual(said.count("warning"), 1)
+        self.assertEqual([c["surface_i"]["type"] for c in model["contacts"]], ["disk", "disk"])
+        row = self.checked_and_run("1")
+        self.assertAlmostEqual(row["a.rz"], 0.1, delta=1e-9)
+        self.assertAlmostEqual(row["a.vz"], 0, delta=1e-10)
 
     def test_base_is_raised(self):
         """A free base whose geometry is below the floor is raised onto it."""
@@ -191,10 +204,10 @@ class Import(unittest.TestCase):
         # what has no detector
         text = text.replace(capsule.format('condim="1"'), '<geom name="egg" type="ellipsoid" size="0.02 0.03 0.02"/><geom name="can" type="cylinder" size="0.1 0.1"/>')
         model, said = self.imported(self.written(text.format("")), "--contacts")
-        self.assertRegex(said, "contact of geom 'floor' of body 'world' with geom 'can' of body 'c': a cylinder that stands on its end")
+        self.assertEqual([c["body_i"] for c in model["contacts"] if c["surface_i"]["type"] == "disk" or c["surface_j"]["type"] == "disk"], ["ground"] * 2)
         self.assertRegex(said, "contact of geom 'geom_1' of body 'a' with geom 'can' of body 'c': a box can be paired with .*, got box and disk; and 1 other pair")
         self.assertEqual(said.count("box and disk"), 1)
-        self.assertRegex(said, "contact of geom 'geom_1' of body 'a' with geom 'egg' of body 'c': a box can be paired with .*; and 1 other pair of equal geometries")
+        self.assertEqual([c["body_j"] for c in model["contacts"] if c["surface_j"]["type"] == "ellipsoid"], ["c", "c"])
         run(HILDA, "check", self.path("model.json"))
 
     @unittest.skipUnless(MUJOCO, "built without MuJoCo")

@@ -409,6 +409,48 @@ TEST_CASE("a tilted disk has the normal curvature of its rim", "[contact][detect
     }
 }
 
+TEST_CASE("a disk has contact points around its rim", "[contact][detection]")
+{
+    const double R = 0.5;
+    const Shape rim = shape<Disk>(R), plane = shape<Plane>();
+    const auto detector = make_detector(rim, plane), exchanged = make_detector(plane, rim);
+    for (const double tilt : {0., 1e-14, 1e-9, 1e-3, 0.5, 1.5, std::acos(0.0), 3., std::acos(-1.0)}) {
+        CAPTURE(tilt);
+        const Motion disk{.r = Vec3(1, 2, 0.3), .A = lie::exp(Vec3(0, 0, 0.7)) * lie::exp(Vec3(tilt, 0, 0))},
+            ground;
+        Manifold all, other;
+        detector->detect_all(disk, ground, INFINITY, all);
+        exchanged->detect_all(ground, disk, INFINITY, other);
+        REQUIRE(all.size() == 8);
+        REQUIRE(other.size() == 8);
+        const double lowest = 0.3 - R * std::abs(std::sin(tilt));
+        CHECK(std::abs(all[0].at.gap - lowest) < 1e-14);
+        for (int k = 0; k < 8; ++k) {
+            const ContactPoint& p = all[k].at;
+            const Vec3 a = disk.A.transpose() * (p.C_i - disk.r);
+            CHECK(std::abs(a.z()) < 1e-15);
+            CHECK(std::abs(a.norm() - R) < 1e-15);
+            CHECK(p.gap == Approx(p.C_i.z()).margin(1e-15));
+            CHECK(p.gap >= lowest - 1e-14);
+            CHECK((p.C_i - all[(k + 1) % 8].at.C_i).norm() == Approx(2 * R * std::sin(std::acos(0.0) / 4)));
+            CHECK(all[k].feature == static_cast<std::uint32_t>(k));
+            CHECK(other[k].at.C_j == p.C_i);
+            CHECK(other[k].at.n == -p.n);
+        }
+        int within = 0;
+        for (const ManifoldPoint& p : all) within += p.at.gap < 0.3 ? 1 : 0;
+        detector->detect_all(disk, ground, 0.3, other);
+        CHECK(other.size() == within);
+    }
+    // parallel to the plane the points are fixed to the body, whatever the rounding errors
+    Manifold flat, noisy;
+    detector->detect_all({}, {}, 1e-3, flat);
+    detector->detect_all({.A = lie::exp(Vec3(3e-15, -2e-15, 0))}, {}, 1e-3, noisy);
+    REQUIRE(flat.size() == 8);
+    REQUIRE(noisy.size() == 8);
+    for (int k = 0; k < 8; ++k) CHECK((flat[k].at.C_i - noisy[k].at.C_i).norm() < 1e-14);
+}
+
 TEST_CASE("the search restarts if the initial guess does not lead to a contact point", "[contact][detection]")
 {
     Motion m, ground;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/soft_friction.hpp"
 
+#include "contact/compliant/manifold_force.hpp"
 #include "contact/evolving/contact.hpp"
 #include "contact/friction/laws/spring.hpp"
 #include "contact/friction/tracked_force.hpp"
@@ -51,7 +52,22 @@ std::vector<std::string> soft_friction_warnings(const dae::Model& model, const l
     const auto add = [&](std::string what) {
         if (!what.empty()) all.push_back(std::move(what));
     };
+    std::vector<LoadedPoint> points;
     model.for_forces(x, [&](const dae::Force& force, int) {
+        if (const auto* several = dynamic_cast<const ManifoldForce*>(&force)) {
+            const auto* law = dynamic_cast<const SlidingFriction*>(several->contact.friction.get());
+            if (law == nullptr) return;
+            several->points(x, points);
+            double N = 0;
+            for (const LoadedPoint& p : points) N += p.N;
+            const auto most =
+                std::max_element(points.begin(), points.end(),
+                                 [](const LoadedPoint& a, const LoadedPoint& b) { return a.N < b.N; });
+            if (most != points.end())
+                add(warning(several->name, most->at, dae::motion(x, several->i), dae::motion(x, several->j),
+                            law->p.mu_k * N, law->p.K_E));
+            return;
+        }
         const auto* f = dynamic_cast<const TrackedForce*>(&force);
         if (f == nullptr || !f->is_active(x)) return;
         const auto* law = dynamic_cast<const SlidingFriction*>(&f->law());

@@ -20,7 +20,7 @@ using lie::Mat3;
 ///     sphere      radius R
 ///     ellipsoid   semi-axes a, b, c                           semi-axes along x, y, z
 ///     cylinder    radius R, length L                          centre line along the axis
-///     capsule     radius R, length L of the cylindrical part  centre line along the axis, half spheres at its ends
+///     capsule     radius R, length L of the cylindrical part  centre line along the axis, with half spheres
 ///     cone        radius R of the base, height H              apex at 3/4 H along the axis, base at -H/4
 ///     convex      none; vertices and faces                    convex polyhedron
 struct BodyShape {

@@ -412,6 +412,23 @@ TEST_CASE("comments are wrapped at 110 columns", "[house]")
     }
 }
 
+TEST_CASE("no text contains the marks of an unresolved merge", "[house]")
+{
+    std::vector<fs::path> texts = {"README.md", "CHANGELOG.md", "CONTRIBUTING.md"};
+    for (const fs::path& p : paths_in_rooms())
+        if (is_source(p)) texts.push_back(p);
+    for (const auto& entry : fs::recursive_directory_iterator(root / "docs"))
+        if (entry.path().extension() == ".md") texts.push_back(fs::relative(entry.path(), root));
+    CHECK(texts.size() > 500);
+    for (const fs::path& p : texts) {
+        std::ifstream in(root / p);
+        std::string line;
+        for (int number = 1; std::getline(in, line); ++number)
+            if (line.starts_with("<<<<<<< ") || line.starts_with(">>>>>>> "))
+                FAIL_CHECK(p.generic_string() << ":" << number);
+    }
+}
+
 TEST_CASE("accepts_nan finds refusals that a number that is not finite passes", "[house]")
 {
     CHECK(accepts_nan("    if (cosine < 1 - 1e-6)", "        lie::reject(type, \"parallel\");"));

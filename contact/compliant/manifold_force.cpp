@@ -5,8 +5,8 @@
 #include "contact/derivative_check.hpp"
 #include "contact/detection/near_pairs.hpp"
 #include "contact/internal_state.hpp"
+#include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/polytope.hpp"
-#include "contact/surfaces/sphere.hpp"
 #include "dae/model.hpp"
 
 #include <algorithm>
@@ -19,13 +19,15 @@ constexpr double shares_within = 0.1;  // gap up to which points have a share, r
 constexpr double same_place = 0.05;    // distance of points with one history, relative to the smaller size
 constexpr double any_gap = std::numeric_limits<double>::infinity();
 
-/// A law that needs curvatures is for a ball beside a body with edges: faces and edges have none.
+/// A law that needs curvatures is for a smooth body beside one with edges: faces and edges have none.
 void check_law(const std::string& label, const Shape& i, const Shape& j, const NormalLaw& normal,
                const FrictionModel& friction)
 {
-    if (dynamic_cast<const Sphere*>(i.surface.get()) != nullptr ||
-        dynamic_cast<const Sphere*>(j.surface.get()) != nullptr)
-        return;
+    const auto is_flat = [](const Shape& shape) {
+        return dynamic_cast<const Polytope*>(shape.surface.get()) != nullptr ||
+               dynamic_cast<const Plane*>(shape.surface.get()) != nullptr;
+    };
+    if (!is_flat(i) || !is_flat(j)) return;
     if (normal.needs_curvature())
         lie::reject(label, "the normal law needs the curvature of a surface; use hooke",
                     "a " + i.surface->name() + " and a " + j.surface->name());
@@ -137,14 +139,17 @@ auto ManifoldForce::named(const lie::State& x, const F& f) const
     }
 }
 
-const ManifoldForce::Point* ManifoldForce::point_for(const ManifoldPoint& p, const lie::State& x,
-                                                     const Manifold& manifold, unsigned taken) const
+/// The place for the history of a contact point, and whether it continues the history there
+std::pair<const ManifoldForce::Point*, bool> ManifoldForce::point_for(const ManifoldPoint& p,
+                                                                      const lie::State& x,
+                                                                      const Manifold& manifold,
+                                                                      unsigned taken) const
 {
     const auto is_present = [&](std::uint32_t feature) {
         return std::any_of(manifold.begin(), manifold.end(),
                            [&](const ManifoldPoint& q) { return q.feature == feature && q.at.gap < 0; });
     };
-    const Point *nearest = nullptr, *free = nullptr;
+    const Point *nearest = nullptr, *free = nullptr, *left = nullptr;
     double distance = same_place * contact.smaller_of_sizes();
     for (unsigned k = 0; k < point.size(); ++k) {
         if ((taken >> k & 1) != 0) continue;
@@ -152,14 +157,20 @@ const ManifoldForce::Point* ManifoldForce::point_for(const ManifoldPoint& p, con
         if (!of.is_touching(x)) {
             if (free == nullptr) free = &of;
         } else if (of.feature(x) == p.feature) {
-            return &of;
+            return {&of, true};
         } else if (!is_present(of.feature(x))) {
-            if (free == nullptr) free = &of;
+            if (left == nullptr) left = &of;
             if (const double d = (of.last_place(x) - p.at.C()).norm(); d < distance)
                 distance = d, nearest = &of;
         }
     }
-    return nearest != nullptr ? nearest : free;
+    if (nearest != nullptr) return {nearest, true};
+    return {free != nullptr ? free : left, false};
+}
+
+TrackedForce::Instant ManifoldForce::TouchingPoint::at(const lie::State& x) const
+{
+    return point->at(x, now, history);
 }
 
 void ManifoldForce::evaluate(const lie::State& x, Touching& out) const
@@ -179,11 +190,12 @@ void ManifoldForce::evaluate(const lie::State& x, Touching& out) const
                 if (!(p.at.gap < 0) || !(p.share > 0) ||
                     std::any_of(point.begin(), point.end(), has_history) != is_known)
                     continue;
-                const Point* of = point_for(p, x, manifold, taken);
+                const auto [of, continues] = point_for(p, x, manifold, taken);
                 if (of == nullptr) continue;
                 taken |= 1U << of->number;
-                const ContactState now = contact.evaluate_at(p.at, bi, bj, of->saved_history(x), p.share);
-                if (now.N > 0) out.all[static_cast<std::size_t>(out.count++)] = {of, p.feature, now};
+                const ContactHistory history = continues ? of->saved_history(x) : ContactHistory();
+                const ContactState now = contact.evaluate_at(p.at, bi, bj, history, p.share);
+                if (now.N > 0) out.all[static_cast<std::size_t>(out.count++)] = {of, p.feature, history, now};
             }
     });
 }
@@ -192,7 +204,7 @@ void ManifoldForce::add(const lie::State& x, lie::Loads& out) const
 {
     Touching touching;
     evaluate(x, touching);
-    for (const TouchingPoint& t : touching) t.point->add(t.point->at(x, t.now), x, out);
+    for (const TouchingPoint& t : touching) t.point->add(t.at(x), x, out);
 }
 
 double ManifoldForce::potential_energy(const lie::State& x) const
@@ -209,7 +221,7 @@ double ManifoldForce::internal_energy(const lie::State& x) const
     Touching touching;
     evaluate(x, touching);
     double sum = 0;
-    for (const TouchingPoint& t : touching) sum += t.point->internal_energy(t.point->at(x, t.now), x);
+    for (const TouchingPoint& t : touching) sum += t.point->internal_energy(t.at(x), x);
     return sum;
 }
 
@@ -227,7 +239,7 @@ void ManifoldForce::update_internal_state(lie::State& x) const
     unsigned saved = 0, checksum = 0;
     double overlap = 0;
     for (const TouchingPoint& t : touching) {
-        t.point->save(t.point->at(x, t.now), t.feature, x);
+        t.point->save(t.at(x), t.feature, x);
         saved |= 1U << t.point->number;
         overlap = std::max(overlap, -t.now.contact_point.gap);
     }
@@ -292,8 +304,8 @@ double ManifoldForce::stable_step_with(const lie::State& x, lie::LoadEvaluation 
     return named(x, [&] {
         const Motion &bi = motion(x, i), &bj = motion(x, j);
         Manifold manifold;
-        manifold.mean_places = true;
         contact.contact_points(bi, bj, any_gap, manifold);
+        // the compression of a contact with the share 1; laws with a stiffness that grows are for balls
         const double gap = contact.state_at_largest_compression(bi, bj, {}, model.weight()).contact_point.gap;
         const ContactCounts contacts = counts(x, Counted::near, near);
         double least = std::numeric_limits<double>::infinity();
@@ -317,9 +329,11 @@ bool ManifoldForce::is_stable(const lie::State& x, double h, lie::LoadEvaluation
     evaluate(x, now);
     const Motion &bi = motion(x, i), &bj = motion(x, j);
     const ContactCounts contacts = counts(x, Counted::touching, touching);
+    double sum = 0;  // of the shares, which is above 1 where edges cross beside corners
+    for (const TouchingPoint& t : now) sum += t.now.share;
     return std::all_of(now.begin(), now.end(), [&](const TouchingPoint& t) {
         return contact.is_stable(h, lie::damping_factor(evaluation), t.now, bi, bj,
-                                 of_share(contacts, t.now.share));
+                                 of_share(contacts, t.now.share / std::max(1., sum)));
     });
 }
 
@@ -327,7 +341,7 @@ int ManifoldForce::static_springs(const lie::State& x, StaticSpring* out) const
 {
     Touching touching;
     evaluate(x, touching);
-    for (const TouchingPoint& t : touching) out += t.point->static_springs(t.point->at(x, t.now), x, out);
+    for (const TouchingPoint& t : touching) out += t.point->static_springs(t.at(x), x, out);
     return springs_of_point * touching.count;
 }
 
@@ -336,7 +350,7 @@ void ManifoldForce::set_static_forces(lie::State& x, const StaticForce* forces) 
     Touching touching;
     evaluate(x, touching);
     for (const TouchingPoint& t : touching) {
-        t.point->set_static_forces(t.point->at(x, t.now), x, forces);
+        t.point->set_static_forces(t.at(x), x, forces);
         forces += springs_of_point;
     }
 }
@@ -366,7 +380,7 @@ void ManifoldForce::points(const lie::State& x, std::vector<LoadedPoint>& out) c
     Touching touching;
     evaluate(x, touching);
     for (const TouchingPoint& t : touching) {
-        const TrackedForce::Instant now = t.point->at(x, t.now);
+        const TrackedForce::Instant now = t.at(x);
         const Wrench friction = t.point->friction(now, x);
         out.push_back({.at = t.now.contact_point,
                        .feature = t.feature,

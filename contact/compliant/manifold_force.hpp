@@ -23,12 +23,12 @@ namespace hilda::contact {
 /// common area, with any number of corners. A corner alone has its share of it.
 ///
 /// Each point has its own friction history. A point continues the history of the point of the last node with
-/// the same feature, and else of the nearest one whose feature has no point any more, such as a corner that
-/// leaves the face below it.
+/// the same feature, and else of the nearest one within 5 % of the size whose feature has no point any more,
+/// such as a corner that leaves the face below it.
 class ManifoldForce final : public dae::Force, public CompliantForce {
 public:
     /// A contact between two bodies of the model, of which one may be dae::ground. InvalidInput for surfaces
-    /// without a detector, and for a law that needs curvatures unless one surface is a ball.
+    /// without a detector, and for a law that needs curvatures unless one surface is smooth.
     ManifoldForce(const std::string& name, const dae::Model& model, int i, const Shape& shape_i, int j,
                   const Shape& shape_j, std::shared_ptr<const NormalLaw> law,
                   std::shared_ptr<const FrictionModel> friction);
@@ -43,7 +43,7 @@ public:
     bool is_passive() const override { return true; }
     std::string start_error(const lie::State& x) const override;
 
-    /// A number that changes with the regimes of the points, which are internal states
+    /// A number made of the regimes of the points, which are internal states. Others may have the same.
     int discrete_states() const override { return 1; }
     int internal_states() const override;
     void update_internal_state(lie::State& x) const override;
@@ -82,9 +82,12 @@ private:
     static constexpr int springs_of_point = 3;
     class Point;
     struct TouchingPoint {
-        const Point* point;  ///< that has the history
+        const Point* point;  ///< the place of the history
         std::uint32_t feature;
+        ContactHistory history;  ///< of the last node; empty for a new point
         ContactState now;
+
+        TrackedForce::Instant at(const lie::State& x) const;
     };
     /// The points in contact in a state
     struct Touching {
@@ -95,8 +98,8 @@ private:
         const TouchingPoint* end() const { return all.data() + count; }
     };
     void evaluate(const lie::State& x, Touching& out) const;
-    const Point* point_for(const ManifoldPoint& p, const lie::State& x, const Manifold& manifold,
-                           unsigned taken) const;
+    std::pair<const Point*, bool> point_for(const ManifoldPoint& p, const lie::State& x,
+                                            const Manifold& manifold, unsigned taken) const;
     template <class F>
     auto named(const lie::State& x, const F& f) const;
     ContactCounts counts(const lie::State& x, Counted which, std::span<const int> of_body) const;

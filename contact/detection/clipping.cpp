@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/detection/clipping.hpp"
 
+#include "contact/detection/manifold.hpp"
 #include "contact/surfaces/area_shares.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -71,38 +73,59 @@ void ClippedFace::clip(const Vec3& outward, double limit, int side, double lengt
     corner.swap(other);
 }
 
-void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most, bool mean_places)
+/// Moves the corner with the largest measure to `other`.
+template <class Measure>
+void ClippedFace::take_largest(const Measure& measure)
 {
-    std::erase_if(corner, [&](const Corner& c) { return !(n.dot(c.x - p) < reach); });
-    if (corner.size() <= static_cast<std::size_t>(most)) return;
-    other.clear();
-    const auto take_largest = [&](const auto& measure) {
-        std::size_t best = 0;
-        for (std::size_t k = 1; k < corner.size(); ++k)
-            if (measure(corner[k].x) > measure(corner[best].x)) best = k;
-        other.push_back(corner[best]);
-        corner.erase(corner.begin() + static_cast<std::ptrdiff_t>(best));
-    };
-    // The lowest corner changes with each small motion, so that mean places would change with it.
-    if (!mean_places) take_largest([&](const Vec3& x) { return -n.dot(x); });
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < corner.size(); ++k)
+        if (measure(corner[k].x) > measure(corner[best].x)) best = k;
+    other.push_back(corner[best]);
+    corner.erase(corner.begin() + static_cast<std::ptrdiff_t>(best));
+}
+
+/// Moves the corners that are farthest in directions across n to `other`, until it has `most`.
+void ClippedFace::take_farthest(const Vec3& n, int most)
+{
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
     while (other.size() < static_cast<std::size_t>(most)) {
         const double angle =
             direction_of_first + 2 * std::numbers::pi * static_cast<double>(other.size()) / most;
         take_largest([&](const Vec3& x) { return std::cos(angle) * u.dot(x) + std::sin(angle) * w.dot(x); });
     }
-    // the kept corners are found by their places, which change below
-    outline.clear();
-    for (const Corner& c : other) outline.push_back(c.x);
+}
+
+void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most)
+{
+    std::erase_if(corner, [&](const Corner& c) { return !(n.dot(c.x - p) < reach); });
+    if (corner.size() <= static_cast<std::size_t>(most)) return;
+    other.clear();
+    take_largest([&](const Vec3& x) { return -n.dot(x); });
+    take_farthest(n, most);
+    corner.swap(other);
+}
+
+bool ClippedFace::merge(const Vec3& n, const Vec3& p, double overlaps_below, int most)
+{
+    const auto overlap = [&](const Corner& c) { return overlaps_below - n.dot(c.x - p); };
+    if (corner.size() <= static_cast<std::size_t>(most)) return false;
+    std::erase_if(corner, [&](const Corner& c) { return !(overlap(c) > 0); });
+    if (corner.size() <= static_cast<std::size_t>(most)) return false;
+    other.clear();
+    take_farthest(n, most);
+    std::array<MergedPoint, Manifold::most> merged;
+    for (std::size_t k = 0; k < other.size(); ++k)
+        merged[k].add(other[k].share, overlap(other[k]), other[k].x);
     for (const Corner& left : corner) {
         std::size_t nearest = 0;
-        for (std::size_t k = 1; k < outline.size(); ++k)
-            if ((outline[k] - left.x).squaredNorm() < (outline[nearest] - left.x).squaredNorm()) nearest = k;
-        Corner& c = other[nearest];
-        c.share += left.share;
-        if (mean_places && c.share > 0) c.x += left.share / c.share * (left.x - c.x);
+        for (std::size_t k = 1; k < other.size(); ++k)
+            if ((other[k].x - left.x).squaredNorm() < (other[nearest].x - left.x).squaredNorm()) nearest = k;
+        merged[nearest].add(left.share, overlap(left), left.x);
     }
+    for (std::size_t k = 0; k < other.size(); ++k)
+        other[k].x = merged[k].place(other[k].x), other[k].share = merged[k].share();
     corner.swap(other);
+    return true;
 }
 
 TouchingParts ClippedFace::parts(const Corner& c, const Polytope::Face& reference) const

@@ -23,6 +23,21 @@ struct TouchingParts {
     TouchingParts exchanged() const { return {b, a}; }
 };
 
+/// Corners that are merged, see Manifold::mean_places
+class MergedPoint {
+public:
+    void add(double share, double overlap, const Vec3& x)
+    {
+        first += share * overlap, second += share * overlap * overlap, moment += share * overlap * x;
+    }
+    double share() const { return second > 0 ? first * first / second : 0; }
+    Vec3 place(const Vec3& otherwise) const { return first > 0 ? Vec3(moment / first) : otherwise; }
+
+private:
+    double first = 0, second = 0;
+    Vec3 moment = Vec3::Zero();
+};
+
 /// The part of a face, edge or vertex of a body within the prism of a face of another body
 class ClippedFace {
 public:
@@ -39,9 +54,11 @@ public:
     /// body without faces. n is the normal of f. Corners within `length` [m] of a side count as inside.
     void set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident, double length);
     /// Removes the corners with height n · (x - p) >= reach over the point p. Of more than `most` the lowest
-    /// one remains and those that are farthest in most - 1 directions; the nearest of them take over the
-    /// shares of the others. See Manifold::mean_places.
-    void keep(const Vec3& n, const Vec3& p, double reach, int most, bool mean_places);
+    /// one remains and those that are farthest in most - 1 directions.
+    void keep(const Vec3& n, const Vec3& p, double reach, int most);
+    /// Of more than `most` corners removes those with height >= overlaps_below, and merges them if there are
+    /// still more, see Manifold::mean_places. Returns whether it has merged corners.
+    bool merge(const Vec3& n, const Vec3& p, double overlaps_below, int most);
     /// The parts of a corner; a is the reference body
     TouchingParts parts(const Corner& c, const Polytope::Face& reference) const;
 
@@ -49,6 +66,9 @@ private:
     static constexpr int first_side = 1 << 16;
 
     void clip(const Vec3& outward, double limit, int side, double length);
+    template <class Measure>
+    void take_largest(const Measure& measure);
+    void take_farthest(const Vec3& n, int most);
 
     std::vector<Corner> other;
     std::vector<Vec3> outline;

@@ -26,9 +26,13 @@ class Manifold {
 public:
     static constexpr int most = 8;
 
-    /// Detector::detect_all() may replace many corners of a face by eight points. Each stands for the corners
-    /// near it: at a corner that is farthest in some direction, or, if this is true, at the mean place of
-    /// these corners, weighted by their shares. Loads then have the same resultant as those of all corners.
+    /// Detector::detect_all() may replace many corners of a face by eight points, at the corners that are
+    /// farthest in some directions. If this is true, corners that overlap are merged with those near them
+    /// instead: k corners with the shares s_k, overlaps δ_k and places x_k become the point with
+    ///
+    ///     share (Σ s_k δ_k)²/Σ s_k δ_k²,   place Σ s_k δ_k x_k/Σ s_k δ_k,   overlap Σ s_k δ_k²/Σ s_k δ_k.
+    ///
+    /// A linear normal force has the same resultant, moment and energy as those of all corners.
     bool mean_places = false;
 
     void clear() { count = 0; }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/detection/clipping.hpp"
 #include "contact/detection/detectors.hpp"
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/polytope.hpp"
@@ -17,8 +18,8 @@ namespace {
 ///     g = n · (v - o) - radius,   C_i = v - radius n
 ///
 /// The feature is the number of the vertex. Of more than eight vertices within reach the deepest one and
-/// those that are farthest in seven directions of the plane count; the nearest of them take over the shares
-/// of the others. See Manifold::mean_places.
+/// those that are farthest in seven directions of the plane count, or they are merged, see
+/// Manifold::mean_places.
 class PolytopePlane final : public Detector {
 public:
     PolytopePlane(const Shape& i, const Polytope& body, const Shape& j)
@@ -36,8 +37,14 @@ public:
         out.clear();
         const Placed at(*this, bi, bj);
         const auto vertices = static_cast<int>(body.vertex.size());
-        int within = 0;
-        for (int k = 0; k < vertices; ++k) within += at.gap(k) < reach ? 1 : 0;
+        const auto count_within = [&](double limit) {
+            int within = 0;
+            for (int k = 0; k < vertices; ++k) within += at.gap(k) < limit ? 1 : 0;
+            return within;
+        };
+        int within = count_within(reach);
+        if (out.mean_places && within > Manifold::most)
+            reach = std::min(reach, 0.), within = count_within(reach);
         if (within <= Manifold::most) {
             for (int k = 0; k < vertices; ++k)
                 if (at.gap(k) < reach) add(at, k, out);
@@ -54,7 +61,7 @@ public:
                 if (at.gap(k) < reach && !is_in(k) && (best < 0 || measure(k) > measure(best))) best = k;
             add(at, best, out);
         };
-        // The deepest vertex changes with each small motion, so that mean places would change with it.
+        // The deepest vertex changes with each small motion, and merged points would change with it.
         if (!out.mean_places) add_largest([&](int k) { return -at.gap(k); });
         const Vec3 x = at.n_i.unitOrthogonal(), y = at.n_i.cross(x);
         while (out.size() < Manifold::most) {
@@ -63,24 +70,7 @@ public:
             const Vec3 u = std::cos(angle) * x + std::sin(angle) * y;
             add_largest([&](int k) { return u.dot(at.vertex(k)); });
         }
-        std::array<Vec3, Manifold::most> place;
-        std::transform(out.begin(), out.end(), place.begin(),
-                       [&](const ManifoldPoint& p) { return at.vertex(static_cast<int>(p.feature)); });
-        for (int k = 0; k < vertices; ++k) {
-            if (!(at.gap(k) < reach) || is_in(k)) continue;
-            ManifoldPoint* nearest = out.begin();
-            for (ManifoldPoint& p : out)
-                if ((body.vertex[p.feature] - at.vertex(k)).squaredNorm() <
-                    (body.vertex[nearest->feature] - at.vertex(k)).squaredNorm())
-                    nearest = &p;
-            const double share = at.share(k);
-            nearest->share += share;
-            Vec3& of = place[static_cast<std::size_t>(nearest - out.begin())];
-            if (out.mean_places && nearest->share > 0) of += share / nearest->share * (at.vertex(k) - of);
-        }
-        if (out.mean_places)
-            for (ManifoldPoint& p : out)
-                p.at = at.contact_point(place[static_cast<std::size_t>(&p - out.begin())]);
+        if (out.mean_places) merge(at, reach, out);
         out.sort();
     }
 
@@ -107,6 +97,28 @@ private:
             return {.C_i = C_i, .C_j = C_i - g * n, .n = n, .gap = g, .K_i = K, .K_j = Mat3::Zero()};
         }
     };
+
+    /// Merges each vertex with a gap below `reach` with the nearest one of `out`.
+    void merge(const Placed& at, double reach, Manifold& out) const
+    {
+        std::array<MergedPoint, Manifold::most> merged;
+        for (int k = 0; k < static_cast<int>(body.vertex.size()); ++k) {
+            if (!(at.gap(k) < reach)) continue;
+            const auto distance = [&](const ManifoldPoint& p) {
+                return (body.vertex[p.feature] - at.vertex(k)).squaredNorm();
+            };
+            const ManifoldPoint* const nearest = std::min_element(
+                out.begin(), out.end(),
+                [&](const ManifoldPoint& p, const ManifoldPoint& q) { return distance(p) < distance(q); });
+            merged[static_cast<std::size_t>(nearest - out.begin())].add(at.share(k), -at.gap(k),
+                                                                        at.vertex(k));
+        }
+        for (ManifoldPoint& p : out) {
+            const MergedPoint& of = merged[static_cast<std::size_t>(&p - out.begin())];
+            p.at = at.contact_point(of.place(body.vertex[p.feature]));
+            p.share = of.share();
+        }
+    }
 
     static void add(const Placed& at, int k, Manifold& out)
     {

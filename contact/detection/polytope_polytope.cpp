@@ -61,7 +61,7 @@ public:
         if (of_faces.kind != SeparatingAxis::none) add_face(of_faces, axis.separation - length);
         double nearest = std::numeric_limits<double>::infinity();
         for (const ManifoldPoint& p : out) nearest = std::min(nearest, p.at.gap + radii);
-        if (nearest <= axis.separation + length) {
+        if (is_merged || nearest <= axis.separation + length) {
             set_rest();
         } else if (axis.kind == SeparatingAxis::none || axis.separation >= -length) {
             add_closest();
@@ -81,7 +81,8 @@ private:
         const Polytope::Face& face = reference.core.face[static_cast<std::size_t>(axis.first)];
         const Vec3& p = reference.at(face.vertex[0]);
         memory.clipped.set(reference, axis.first, n, incident, length);
-        memory.clipped.keep(n, p, reach + radii, Manifold::most, out.mean_places);
+        if (out.mean_places) is_merged = memory.clipped.merge(n, p, radii, Manifold::most);
+        memory.clipped.keep(n, p, reach + radii, Manifold::most);
         for (const ClippedFace::Corner& c : memory.clipped.corner) {
             const double height = n.dot(c.x - p);
             if (height >= lowest) add_over_face(of_a, c.x, n, height, memory.clipped.parts(c, face), c.share);
@@ -211,11 +212,12 @@ private:
         const auto global = [&](const Vec3& x) -> Vec3 { return at_b.origin + at_b.axes * x; };
         const Vec3 normal = at_b.axes * n, C_a = global(x_a + A.core.radius * n),
                    C_b = global(x_b - B.core.radius * n);
-        const auto curvature = [&](std::uint32_t part, double radius) -> Mat3 {
-            if ((part & TouchingParts::of_edge) != 0 || !(radius > 0)) return Mat3::Zero();
-            return (Mat3::Identity() - normal * normal.transpose()) / radius;
+        const auto curvature = [&](std::uint32_t part, const Polytope& core) -> Mat3 {
+            const bool is_ball = core.vertex.size() == 1;
+            if (!is_ball && ((part & TouchingParts::of_edge) != 0 || !(core.radius > 0))) return Mat3::Zero();
+            return (Mat3::Identity() - normal * normal.transpose()) / core.radius;
         };
-        const Mat3 K_a = curvature(parts.a, A.core.radius), K_b = curvature(parts.b, B.core.radius);
+        const Mat3 K_a = curvature(parts.a, A.core), K_b = curvature(parts.b, B.core);
         ManifoldPoint p;
         p.at.gap = separation - radii;
         p.at.C_i = a_is_j ? C_b : C_a, p.at.C_j = a_is_j ? C_a : C_b;
@@ -244,6 +246,7 @@ private:
     const bool a_is_j;
     const double radii, reach;
     double share_of_rest = 0;
+    bool is_merged = false;  ///< the points of the face stand for more corners
     Manifold& out;
 };
 

@@ -114,9 +114,10 @@ ContactState TrackedForce::evaluate(const lie::State& x) const
     }
 }
 
-TrackedForce::Instant TrackedForce::at(const lie::State& x, const ContactState& contact_state) const
+TrackedForce::Instant TrackedForce::at(const lie::State& x, const ContactState& contact_state,
+                                       const ContactHistory& history) const
 {
-    Instant now{.contact_state = contact_state, .history = saved_history(x)};
+    Instant now{.contact_state = contact_state, .history = history};
     SlidingDisplacement& s = now.contact_state.slip;
     if (now.contact_state.N > 0 && now.history.touching) {
         const auto last = restored<SavedValues>(x.internal_state.data() + first_of_history());

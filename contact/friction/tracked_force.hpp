@@ -55,7 +55,7 @@ public:
         /// x is the state at which the history was stored; the history is then not advanced
         bool is_saved = false;
     };
-    Instant at(const lie::State& x) const { return at(x, evaluate(x)); }
+    Instant at(const lie::State& x) const { return at(x, evaluate(x), saved_history(x)); }
     /// Whether the bodies were in contact at the node of the history in x
     bool is_touching(const lie::State& x) const;
     double internal_energy(const lie::State& x) const override;
@@ -84,8 +84,8 @@ protected:
     /// Contact point, normal force and sliding displacement since the saved history, without its name in an
     /// error
     ContactState evaluate(const lie::State& x) const;
-    /// at(x) with the result of evaluate()
-    Instant at(const lie::State& x, const ContactState& now) const;
+    /// at(x) with the result of evaluate() for this history
+    Instant at(const lie::State& x, const ContactState& now, const ContactHistory& history) const;
     // The functions of a Force, with `now` = at(x)
     void add(const Instant& now, const lie::State& x, lie::Loads& out) const;
     double internal_energy(const Instant& now, const lie::State& x) const;

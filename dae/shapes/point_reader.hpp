@@ -22,8 +22,7 @@ MeshKeys read_mesh_keys(ObjectReader& o, std::string_view about_file = {});
 std::vector<Vec3> read_mesh_points(const MeshKeys& keys);
 
 /// Reads a list of rows of numbers, all of the same length, as a matrix. `width` is the required length of a
-/// row; without it the first row sets the length. About::rest has the schema of a row. Throws
-/// PlacedError.
+/// row; without it the first row sets the length. About::rest has the schema of a row. Throws PlacedError.
 Eigen::MatrixXd read_rows(ObjectReader& o, std::string_view key, std::optional<std::size_t> width,
                           const io::About& about);
 

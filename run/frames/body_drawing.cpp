@@ -86,7 +86,7 @@ PolygonMesh equivalent_solid(const dae::Body& body)
 {
     constexpr double thinnest = 0.02;  // relative to the longest side
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.J_bar);
-    const Vec3 J = principal.eigenvalues();
+    const Vec3& J = principal.eigenvalues();
     if (has_equal_moments(body))
         return contact::tessellate(contact::Sphere(std::sqrt(2.5 * J[2] / body.m)), {});
 

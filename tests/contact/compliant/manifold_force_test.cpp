@@ -177,6 +177,84 @@ TEST_CASE("a box that tumbles on a plane without friction keeps its energy to se
     CHECK(std::log2(error[0] / error[2]) > 3);
 }
 
+TEST_CASE("many corners have the force, the moment and the energy of all springs",
+          "[contact][compliant][manifold]")
+{
+    // a tilted prism, of which some corners overlap
+    const std::string slab = R"({"type": "box", "lengths": [2, 2, 1], "position": [0, 0, -0.5]})";
+    for (const int n : {5, 8, 9, 12, 40})
+        for (const double tilt : {0., 1e-3, 0.03})
+            for (const double depth : {1e-4, 3e-4})
+                for (const std::string& floor : {plane, slab}) {
+                    CAPTURE(n, tilt, depth, floor);
+                    std::vector<Vec3> corner;
+                    for (int c = 0; c < n; ++c) {
+                        const double a = 2 * std::numbers::pi * c / n;
+                        corner.push_back({0.2 * std::cos(a), 0.2 * std::sin(a), -0.05});
+                    }
+                    const lie::Mat3 A = lie::exp(Vec3(0, tilt, 0));
+                    double lowest = 0;
+                    for (const Vec3& x : corner) lowest = std::min(lowest, (A * x).z());
+                    const double z = -lowest - depth;
+                    CompliantRun r(model(body("b", 1, box_shape({0.2, 0.2, 0.1}), {0, 0, z}, Vec3::Zero(),
+                                              Vec3::Zero(), about_y(tilt)),
+                                         contact("b", "ground", prism(n), floor, hooke(0))),
+                                   1e-4);
+                    Vec3 moment = Vec3::Zero(), exact_moment = Vec3::Zero();
+                    double N = 0, exact = 0, energy = 0;
+                    for (const contact::LoadedPoint& p : r.points()) {
+                        N += p.N, moment += Vec3(p.at.C().x(), p.at.C().y(), 0).cross(p.N * p.at.n);
+                    }
+                    for (const Vec3& x : corner) {
+                        const Vec3 at = A * x + Vec3(0, 0, z);
+                        const double overlap = std::max(0., -at.z()), of_one = k * overlap / n;
+                        exact += of_one, energy += 0.5 * of_one * overlap;
+                        exact_moment += at.cross(Vec3(0, 0, of_one));
+                    }
+                    // On a plane the sides of the prism have a small weight. On a box the normal is that of
+                    // the plate or of the prism.
+                    const double shares = n != 4 && tilt > 0 ? 1e-2 : 1e-9;
+                    CHECK(N == Approx(exact).epsilon(shares));
+                    CHECK((moment - exact_moment).norm() < 0.2 * shares * exact + 1e-2 * tilt * exact);
+                    CHECK(r.force().potential_energy(r.state()) == Approx(energy).epsilon(shares));
+                }
+}
+
+TEST_CASE("the energy of a tumbling prism with many corners is kept (long)", "[contact][compliant][manifold]")
+{
+    for (const int n : {12, 40}) {
+        CAPTURE(n);
+        std::vector<double> error;
+        for (const double h : {2e-5, 1e-5}) {
+            CompliantRun r(model(body("b", 1, R"({"cylinder": [0.2, 0.1]})", {0, 0, 0.12}, Vec3::Zero(),
+                                      {0.5, 1, 0.3}, R"(, "axis_angle": [0.6, 0.8, 0, 0.2])"),
+                                 contact("b", "ground", prism(n), plane, hooke(0))),
+                           h);
+            const double before = r.energy();
+            double largest = 0;
+            int most = 0;
+            r.to(0.5, [&] {
+                largest = std::max(largest, std::abs(r.energy() - before));
+                most = std::max(most, static_cast<int>(r.points().size()));
+            });
+            CHECK(most > 1);
+            error.push_back(largest / before);
+        }
+        CAPTURE(error[0], error[1]);
+        CHECK(error[1] < 2e-3);
+    }
+}
+
+TEST_CASE("a capsule that stands on one end has half of the stiffness", "[contact][compliant][manifold]")
+{
+    CompliantRun r(model(body("b", 1, box_shape({0.1, 0.1, 0.3}), {0, 0, 0.15 - 2 * g / k}),
+                         contact("b", "ground", R"({"type": "capsule", "length": 0.2, "radius": 0.05})",
+                                 plane, hooke(0))),
+                   1e-4);
+    REQUIRE(r.points().size() == 1);
+    CHECK(r.points()[0].N == Approx(g).epsilon(1e-9));
+}
+
 TEST_CASE("bodies that exchange their names have opposite loads", "[contact][compliant][manifold]")
 {
     tests::Random random(11);
@@ -290,13 +368,36 @@ TEST_CASE("laws that need the curvature of an edge are refused", "[contact][comp
     CHECK(error(hertz, rigid_tests::ball_surface(0.1)) == "");
 }
 
-TEST_CASE("boxes of a group move as those of single contacts", "[contact][compliant][manifold][neighbours]")
+TEST_CASE("a ball on a face, an edge and a corner of a box has the curvature of its surface",
+          "[contact][compliant][manifold]")
+{
+    const std::string hertz = R"("normal": {"type": "hertz", "E_star": 1e6})",
+                      box = R"({"type": "box", "lengths": [0.2, 0.2, 0.2]})";
+    for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0, 1, 1).normalized(), Vec3(1, 1, 1).normalized()}) {
+        const Vec3 on_box = 0.1 * n / n.maxCoeff();
+        for (const bool box_first : {false, true}) {
+            const std::string ball = rigid_tests::ball_surface(0.05);
+            CompliantRun r(model(body("b", 1, ball_shape(0.05), on_box + (0.05 - 1e-4) * n),
+                                 box_first ? contact("ground", "b", box, ball, hertz)
+                                           : contact("b", "ground", ball, box, hertz),
+                                 Vec3::Zero()),
+                           1e-4);
+            CAPTURE(n.transpose(), box_first);
+            REQUIRE(r.points().size() == 1);
+            CHECK(r.points()[0].N == Approx(4. / 3 * 1e6 * std::sqrt(0.05) * std::pow(1e-4, 1.5)));
+        }
+    }
+}
+
+TEST_CASE("boxes of a group move as those of single contacts (long)",
+          "[contact][compliant][manifold][neighbours]")
 {
     const std::string box = box_surface({0.1, 0.1, 0.1});
     std::vector<std::string> bodies, single;
     for (int b = 0; b < 9; ++b) {
+        const int column = b % 3, row = b / 3;
         bodies.push_back(body("b" + std::to_string(b), 1, box_shape({0.1, 0.1, 0.1}),
-                              {0.13 * (b % 3), 0.13 * (b / 3), 0.1 + 0.02 * b}, {0.3 * (1 - b % 3), 0, -1},
+                              {0.13 * column, 0.13 * row, 0.1 + 0.02 * b}, {0.3 * (1 - b % 3), 0, -1},
                               {1, 0.5 * b, 0}));
         for (int other = 0; other < b; ++other)
             single.push_back(

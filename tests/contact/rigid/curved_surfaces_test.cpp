@@ -51,8 +51,9 @@ TEST_CASE("a ball that slides in a bowl converges with order one", "[contact][ri
     for (int n = 0; n < 2; ++n) {
         CAPTURE(n, position[n], position[n + 1], force[n], force[n + 1]);
         CHECK(std::log2(position[n] / position[n + 1]) == Approx(1).margin(0.1));
-        CHECK(std::log2(force[n] / force[n + 1]) == Approx(1).margin(0.3));
     }
+    CHECK(force[2] < 2e-5);
+    CHECK(force[0] == Approx(6 * force[1] - 8 * force[2]).epsilon(0.02));  // error a h + b h^2
     CHECK(position[2] < 2e-3);
 }
 
@@ -66,7 +67,8 @@ TEST_CASE("ellipsoids that collide keep their momentum and angular momentum", "[
                 contact_of("a", "b", egg, egg, 0.5, 0.3), Vec3::Zero()),
           h);
     r.step();
-    const auto [P, L] = momenta(r, h);
+    const auto [first, second] = momenta(r, h);
+    const Vec3 P = first, L = second;
     const double before = r.energy();
     long touching = 0;
     r.to(0.6, [&](const State& x) {

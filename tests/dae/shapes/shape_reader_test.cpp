@@ -92,8 +92,8 @@ TEST_CASE("a convex shape is read from a mesh file", "[dae][shape]")
     const TemporaryFolder folder;
     io::write_file(folder.path / "stone.obj",
                    "v 0 0 0\nv 400 0 0\nv 0 800 0\nv 0 0 1200\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-    const std::string keys =
-        R"("density": 1000, "shape": {"convex": {"file": "stone.obj", "scale": 1e-3, "position": [-0.1, -0.2, -0.3]}})";
+    const std::string keys = R"("density": 1000, "shape": {"convex": {"file": "stone.obj", "scale": 1e-3, )"
+                             R"("position": [-0.1, -0.2, -0.3]}})";
     const dae::Description d = dae::read_model(body_text(keys), "m.json", {}, "", folder.path);
     CHECK(d.model->all_bodies()[0].m == Approx(64).epsilon(1e-13));
     CHECK_THAT(d.text, Catch::Contains("vertices") && !Catch::Contains("stone.obj"));

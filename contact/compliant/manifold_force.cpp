@@ -269,7 +269,7 @@ void ManifoldForce::check_step(const lie::State& before, const lie::State& after
     // the ground does not turn
     if (cannot_miss_contact(contact, step, i == dae::ground ? 0 : reach_i, j == dae::ground ? 0 : reach_j))
         return;
-    named(before, [&] { check_for_missed_contact(contact, label(), step, nearest(before), {}); });
+    check_for_missed_contact(contact, label(), step, nearest(before), {});
 }
 
 bool ManifoldForce::is_counted(const lie::State& x, Counted which) const

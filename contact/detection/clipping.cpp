@@ -75,7 +75,7 @@ void ClippedFace::clip(const Vec3& outward, double limit, int side, double lengt
 
 /// Moves the corner with the largest measure to `other`.
 template <class Measure>
-void ClippedFace::take_largest(const Measure& measure)
+void ContactCorners::take_largest(const Measure& measure)
 {
     std::size_t best = 0;
     for (std::size_t k = 1; k < corner.size(); ++k)
@@ -85,7 +85,7 @@ void ClippedFace::take_largest(const Measure& measure)
 }
 
 /// Moves the corners that are farthest in directions across n to `other`, until it has `most`.
-void ClippedFace::take_farthest(const Vec3& n, int most)
+void ContactCorners::take_farthest(const Vec3& n, int most)
 {
     const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
     while (other.size() < static_cast<std::size_t>(most)) {
@@ -95,7 +95,7 @@ void ClippedFace::take_farthest(const Vec3& n, int most)
     }
 }
 
-void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most)
+void ContactCorners::keep(const Vec3& n, const Vec3& p, double reach, int most)
 {
     std::erase_if(corner, [&](const Corner& c) { return !(n.dot(c.x - p) < reach); });
     if (corner.size() <= static_cast<std::size_t>(most)) return;
@@ -105,7 +105,7 @@ void ClippedFace::keep(const Vec3& n, const Vec3& p, double reach, int most)
     corner.swap(other);
 }
 
-bool ClippedFace::merge(const Vec3& n, const Vec3& p, double overlaps_below, int most)
+bool ContactCorners::merge(const Vec3& n, const Vec3& p, double overlaps_below, int most)
 {
     const auto overlap = [&](const Corner& c) { return overlaps_below - n.dot(c.x - p); };
     if (corner.size() <= static_cast<std::size_t>(most)) return false;

@@ -38,8 +38,8 @@ private:
     Vec3 moment = Vec3::Zero();
 };
 
-/// The part of a face, edge or vertex of a body within the prism of a face of another body
-class ClippedFace {
+/// Corners that may be contact points, in the frame of a face or plane
+class ContactCorners {
 public:
     struct Corner {
         Vec3 x;           ///< in the frame of both PlacedCores
@@ -50,15 +50,28 @@ public:
     };
     std::vector<Corner> corner;
 
-    /// Clips the face of `incident` that is most opposite to the face f of `reference`; all vertices of a
-    /// body without faces. n is the normal of f. Corners within `length` [m] of a side count as inside.
-    void set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident, double length);
     /// Removes the corners with height n · (x - p) >= reach over the point p. Of more than `most` the lowest
     /// one remains and those that are farthest in most - 1 directions.
     void keep(const Vec3& n, const Vec3& p, double reach, int most);
     /// Of more than `most` corners removes those with height >= overlaps_below, and merges them if there are
     /// still more, see Manifold::mean_places. Returns whether it has merged corners.
     bool merge(const Vec3& n, const Vec3& p, double overlaps_below, int most);
+
+protected:
+    std::vector<Corner> other;
+
+private:
+    template <class Measure>
+    void take_largest(const Measure& measure);
+    void take_farthest(const Vec3& n, int most);
+};
+
+/// The part of a face, edge or vertex of a body within the prism of a face of another body
+class ClippedFace : public ContactCorners {
+public:
+    /// Clips the face of `incident` that is most opposite to the face f of `reference`; all vertices of a
+    /// body without faces. n is the normal of f. Corners within `length` [m] of a side count as inside.
+    void set(const PlacedCore& reference, int f, const Vec3& n, const PlacedCore& incident, double length);
     /// The parts of a corner; a is the reference body
     TouchingParts parts(const Corner& c, const Polytope::Face& reference) const;
 
@@ -66,11 +79,7 @@ private:
     static constexpr int first_side = 1 << 16;
 
     void clip(const Vec3& outward, double limit, int side, double length);
-    template <class Measure>
-    void take_largest(const Measure& measure);
-    void take_farthest(const Vec3& n, int most);
 
-    std::vector<Corner> other;
     std::vector<Vec3> outline;
     std::vector<double> share;
 };

@@ -4,11 +4,6 @@
 #include "contact/surfaces/plane.hpp"
 #include "contact/surfaces/polytope.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-
 namespace hilda::contact {
 
 namespace {
@@ -42,35 +37,19 @@ public:
             for (int k = 0; k < vertices; ++k) within += at.gap(k) < limit ? 1 : 0;
             return within;
         };
-        int within = count_within(reach);
-        if (out.mean_places && within > Manifold::most)
-            reach = std::min(reach, 0.), within = count_within(reach);
-        if (within <= Manifold::most) {
+        if (count_within(reach) <= Manifold::most) {
             for (int k = 0; k < vertices; ++k)
-                if (at.gap(k) < reach) add(at, k, out);
+                if (at.gap(k) < reach) add(at, at.vertex(k), k, at.share(k), out);
             return;
         }
-        const auto is_in = [&](int k) {
-            return std::any_of(out.begin(), out.end(), [&](const ManifoldPoint& p) {
-                return p.feature == static_cast<std::uint32_t>(k);
-            });
-        };
-        const auto add_largest = [&](const auto& measure) {
-            int best = -1;
-            for (int k = 0; k < vertices; ++k)
-                if (at.gap(k) < reach && !is_in(k) && (best < 0 || measure(k) > measure(best))) best = k;
-            add(at, best, out);
-        };
-        // The deepest vertex changes with each small motion, and merged points would change with it.
-        if (!out.mean_places) add_largest([&](int k) { return -at.gap(k); });
-        const Vec3 x = at.n_i.unitOrthogonal(), y = at.n_i.cross(x);
-        while (out.size() < Manifold::most) {
-            constexpr double first = 0.1;  // [rad], so that regular polygons have no ties
-            const double angle = first + 2 * std::numbers::pi * out.size() / Manifold::most;
-            const Vec3 u = std::cos(angle) * x + std::sin(angle) * y;
-            add_largest([&](int k) { return u.dot(at.vertex(k)); });
-        }
-        if (out.mean_places) merge(at, reach, out);
+        static thread_local ContactCorners list;
+        list.corner.clear();
+        for (int k = 0; k < vertices; ++k)
+            if (at.gap(k) < reach) list.corner.push_back({at.vertex(k), 0, k, 0, at.share(k)});
+        const Vec3 p = -at.height * at.n_i;  // a point of the plane, moved by the radius
+        if (out.mean_places) list.merge(at.n_i, p, 0, Manifold::most);
+        list.keep(at.n_i, p, reach, Manifold::most);
+        for (const ContactCorners::Corner& c : list.corner) add(at, c.x, c.vertex, c.share, out);
         out.sort();
     }
 
@@ -98,33 +77,9 @@ private:
         }
     };
 
-    /// Merges each vertex with a gap below `reach` with the nearest one of `out`.
-    void merge(const Placed& at, double reach, Manifold& out) const
+    static void add(const Placed& at, const Vec3& v, int k, double share, Manifold& out)
     {
-        std::array<MergedPoint, Manifold::most> merged;
-        for (int k = 0; k < static_cast<int>(body.vertex.size()); ++k) {
-            if (!(at.gap(k) < reach)) continue;
-            const auto distance = [&](const ManifoldPoint& p) {
-                return (body.vertex[p.feature] - at.vertex(k)).squaredNorm();
-            };
-            const ManifoldPoint* const nearest = std::min_element(
-                out.begin(), out.end(),
-                [&](const ManifoldPoint& p, const ManifoldPoint& q) { return distance(p) < distance(q); });
-            merged[static_cast<std::size_t>(nearest - out.begin())].add(at.share(k), -at.gap(k),
-                                                                        at.vertex(k));
-        }
-        for (ManifoldPoint& p : out) {
-            const MergedPoint& of = merged[static_cast<std::size_t>(&p - out.begin())];
-            p.at = at.contact_point(of.place(body.vertex[p.feature]));
-            p.share = of.share();
-        }
-    }
-
-    static void add(const Placed& at, int k, Manifold& out)
-    {
-        out.push_back({.at = at.contact_point(at.vertex(k)),
-                       .feature = static_cast<std::uint32_t>(k),
-                       .share = at.share(k)});
+        out.push_back({.at = at.contact_point(v), .feature = static_cast<std::uint32_t>(k), .share = share});
     }
 
     const Shape i;

@@ -18,6 +18,7 @@
 #include "lie/system.hpp"
 #include "lie/trajectory.hpp"
 #include "run/simulation.hpp"
+#include "studies/benchmarks/bin.hpp"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -53,15 +54,7 @@ std::string pile(bool boxes, long count)
                               0.055 + static_cast<double>(layer) * 0.105);
     }
     const double width = static_cast<double>(side) * 0.105 + 0.01;
-    const auto wall = [&](const char* name, double x, double y, const char* axis, int sign) {
-        contacts += fmt::format(
-            R"(, {{"name": "{}", "body_i": "all", "body_j": "ground", "surface_i": {}, "surface_j": )"
-            R"({{"type": "plane", "position": [{}, {}, 0], "normal": [{}]}}, {}}})",
-            name, surface, x, y, fmt::format(fmt::runtime(axis), sign), laws);
-    };
-    wall("floor", 0, 0, "0, 0, {}", 1);
-    wall("left", 0, 0, "{}, 0, 0", 1), wall("right", width, 0, "{}, 0, 0", -1);
-    wall("front", 0, 0, "0, {}, 0", 1), wall("back", 0, width, "0, {}, 0", -1);
+    contacts += studies::walls_of_bin(surface, laws, width);
     return fmt::format(R"({{"hilda_model": 1, "name": "pile", "bodies": [{}], "contacts": [{}]}})", bodies,
                        contacts);
 }

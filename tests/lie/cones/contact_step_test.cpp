@@ -12,6 +12,30 @@
 using namespace hilda;
 using lie::Vec3;
 
+namespace {
+
+/// A box that strikes the ground with a corner, without gravity. Newton's law alone increases the energy in
+/// some of these impacts.
+void add_falling_corner(tests::ContactSystem& system, tests::Random& random)
+{
+    system.gravity.setZero();
+    const Vec3 half(0.1, 0.04, 0.3);
+    const lie::Mat3 A = lie::exp(3 * random.vector());
+    const Vec3 corner = A.transpose() * Vec3(0, 0, -0.2);
+    system.add_box(1, half, {0, 0, 0.2 + 1e-12}, A);
+    system.vertices.push_back({0, -1, corner + 0.1 * random.vector(), Vec3::UnitZ(), 0, 1, 0.9});
+}
+
+lie::State start_of_falling_corner(tests::ContactSystem& system, tests::Random& random)
+{
+    lie::State x = system.start();
+    x.body[0].r.z() -= tests::ContactSystem::point(x, 0, system.vertices[0].s_bar).z() - 1e-9;
+    x.body[0].rdot = random.vector(), x.body[0].omega_bar = 5 * random.vector();
+    return x;
+}
+
+}  // namespace
+
 TEST_CASE("a body that is driven into the ground is an error with the name of the contact point",
           "[lie][cones]")
 {
@@ -116,22 +140,13 @@ TEST_CASE("a contact that only the impulses of the step close is found", "[lie][
 
 TEST_CASE("an impact with friction does not increase the energy", "[lie][cones]")
 {
-    // A box that strikes the ground with a corner, without gravity. Newton's law alone increases the energy
-    // in some of these impacts.
     tests::Random random(11);
     long reduced = 0;
     for (int n = 0; n < 300; ++n) {
         CAPTURE(n);
         tests::ContactSystem system;
-        system.gravity.setZero();
-        const Vec3 half(0.1, 0.04, 0.3);
-        const lie::Mat3 A = lie::exp(3 * random.vector());
-        const Vec3 corner = A.transpose() * Vec3(0, 0, -0.2);
-        system.add_box(1, half, {0, 0, 0.2 + 1e-12}, A);
-        system.vertices.push_back({0, -1, corner + 0.1 * random.vector(), Vec3::UnitZ(), 0, 1, 0.9});
-        lie::State x = system.start();
-        x.body[0].r.z() -= tests::ContactSystem::point(x, 0, system.vertices[0].s_bar).z() - 1e-9;
-        x.body[0].rdot = random.vector(), x.body[0].omega_bar = 5 * random.vector();
+        add_falling_corner(system, random);
+        lie::State x = start_of_falling_corner(system, random);
         const double before = system.kinetic_energy(x);
         const auto integrator = lie::scheme("rA-moreau-1").make(system, {});
         integrator->step(x, 1e-5);
@@ -151,17 +166,10 @@ TEST_CASE("an impact that would increase the energy leaves the rebounds of other
     long reduced = 0;
     for (int n = 0; n < 300; ++n) {
         tests::ContactSystem system;
-        system.gravity.setZero();
-        const Vec3 half(0.1, 0.04, 0.3);
-        const lie::Mat3 A = lie::exp(3 * random.vector());
-        const Vec3 corner = A.transpose() * Vec3(0, 0, -0.2);
-        system.add_box(1, half, {0, 0, 0.2 + 1e-12}, A);
-        system.vertices.push_back({0, -1, corner + 0.1 * random.vector(), Vec3::UnitZ(), 0, 1, 0.9});
+        add_falling_corner(system, random);
         system.add_sphere(1, 0.1, {5, 0, 1e-9});
         system.vertices.push_back({1, -1, Vec3::Zero(), Vec3::UnitZ(), 0, 0, 0.8});
-        lie::State x = system.start();
-        x.body[0].r.z() -= tests::ContactSystem::point(x, 0, system.vertices[0].s_bar).z() - 1e-9;
-        x.body[0].rdot = random.vector(), x.body[0].omega_bar = 5 * random.vector();
+        lie::State x = start_of_falling_corner(system, random);
         x.body[1].rdot = Vec3(0, 0, -1);
         const auto integrator = lie::scheme("rA-moreau-1").make(system, {});
         integrator->step(x, 1e-5);
